@@ -27,7 +27,8 @@ from planner_service.llm.budget import Spent
 from planner_service.llm.client import for_story, spent_on
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.narration.llm_narrator import narrate_with_model
-from planner_service.narration.narrator import Told, narrate
+from planner_service.narration.narrator import narrate
+from planner_service.narration.told import Told
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.script import MAX_NAME_LENGTH, Keyframe, LongScript, Pronouns
 from planner_service.themes.protagonist import cast_by

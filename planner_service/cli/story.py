@@ -21,6 +21,7 @@ from planner_service.cli.console import ModelOption, plain_table
 from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
 from planner_service.llm.ollama_server import ollama_models
+from planner_service.narration.told import UNSEEN
 from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
 from planner_service.settings import give_backends, read_settings
 from planner_service.themes.beats import clean
@@ -200,7 +201,11 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     from planner_service.output.story_export import beats_of, told_notes
 
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
-    console.print(made.planned.told.text + "\n", highlight=False)
+    told = made.planned.told
+    text = Text(told.text)
+    for span in told.thoughts:
+        text.stylize("italic dim", span.start, span.end)
+    console.print(text, f"\n{UNSEEN}\n" if told.thoughts else "", highlight=False)
     console.print(f"played by {', '.join(told_look(made.planned.character))}\n", highlight=False)
     table = plain_table(
         "#", "moment", "at", "seconds", "reached", "off by", right=("#", "seconds", "off by"), fold=True

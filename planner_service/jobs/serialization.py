@@ -15,7 +15,6 @@ from motion_backend.motion import Action, Emotion, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
 from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
-from planner_service.narration.narrator import Span, Told
 from planner_service.scripts.script import LongScript
 from scene_graphs.affordances.affordances import spot_from_dict
 from scene_graphs.graph.furniture_graph import graph_from_dict, graph_to_dict
@@ -55,20 +54,6 @@ def furnished_from_dict(row: Json) -> Furnished:
     )
 
 
-def told_to_dict(told: Told) -> Json:
-    """Title, text and which words tell which keyframes."""
-    spans = [{"start": span.start, "end": span.end, "keyframes": list(span.keyframes)} for span in told.spans]
-    thoughts = [[span.start, span.end] for span in told.thoughts]
-    return {"title": told.title, "text": told.text, "spans": spans, "thoughts": thoughts}
-
-
-def told_from_dict(row: Json) -> Told:
-    """The inverse of `told_to_dict`."""
-    spans = (Span(span["start"], span["end"], tuple(span["keyframes"])) for span in row["spans"])
-    thoughts = (Span(start, end, ()) for start, end in row.get("thoughts", ()))
-    return Told(row["title"], row["text"], tuple(spans), tuple(thoughts))
-
-
 def action_from_dict(row: Json) -> Action:
     """The inverse of `action_to_dict`."""
     spot = spot_from_dict(row["spot"])
@@ -86,8 +71,6 @@ __all__ = [
     "action_to_dict",
     "furnished_from_dict",
     "furnished_to_dict",
-    "told_from_dict",
-    "told_to_dict",
 ]
 
 

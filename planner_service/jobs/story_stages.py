@@ -35,7 +35,7 @@ from planner_service.jobs.serialization import summary_of_home, summary_of_scrip
 from planner_service.jobs.take_reuse import kept_actions, reused_segments
 from planner_service.llm.budget import Spent
 from planner_service.llm.client import spent_on
-from planner_service.narration.narrator import Told
+from planner_service.narration.told import Told
 from planner_service.output.story_export import report_to_dict
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge, role_of
 from planner_service.scripts.script import LongScript
@@ -134,7 +134,7 @@ class OpenStory:
         told = self._json(TOLD)
         script = self.stage.script.model_copy(update={"repairs": tuple(told["repairs"])})
         spent = Spent(**told["spent"]) if told["spent"] else None
-        return Planned(self.request, script, self.stage, serialization.told_from_dict(told), spent)
+        return Planned(self.request, script, self.stage, Told.from_dict(told), spent)
 
     @property
     def role(self) -> Role:
@@ -275,7 +275,7 @@ class Maker:
     def _told(self, story: OpenStory) -> tuple[bytes, Json]:
         stage, told = story.pipeline.tell(story.request, story.stage)
         spent = spent_on(story.pipeline.model)
-        row = serialization.told_to_dict(told) | {"repairs": list(stage.script.repairs)}
+        row = told.to_dict() | {"repairs": list(stage.script.repairs)}
         row["spent"] = asdict(spent) if spent else None
         return _to_bytes(row), row
 

@@ -13,9 +13,8 @@ import numpy as np
 
 from motion_backend.motion import RISINGS, Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
-from planner_service.narration.tense import bases
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
-from planner_service.themes.lexicon import gerund, past
+from planner_service.themes.lexicon import past
 from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.furniture import class_of, display_name
 
@@ -112,37 +111,22 @@ class Phrase:
     text: str
     """In the past: "sat down on the sofa"."""
     keyframes: tuple[int, ...] = ()
-    gerund: str = ""
-    """The same before another deed, "crossing to the sofa"; empty where that would not do."""
     manner: str = ""
     """How the body rests, or what it does there: ", chin in hand", ", then wrote"."""
     skill: Skill | None = None
-    """None for what the theme says."""
-    mood: str = "neutral"
     at: str = ""
     """What it is done at, "the sofa"; empty on the floor."""
-    word: str = ""
-    """The script's word for that."""
-    deeds: frozenset[str] = frozenset()
-    """Base forms of the verbs in its caption: "drinking from a cup"."""
     leads: bool = False
     """Whether the next phrase is what it is done for."""
     stays: bool = False
     """Whether the body rests or stands there already."""
     begins: bool = False
     """Whether a sentence should begin with it."""
-    purpose: str = ""
-    """What it is done for and does not show: "to bake a cake"."""
 
     @property
     def whole(self) -> str:
-        """With its manner and its purpose."""
-        return self.text + self.manner + f" {self.purpose}" * bool(self.purpose)
-
-    @property
-    def rises(self) -> bool:
-        """Whether the body stands up."""
-        return self.skill in RISINGS
+        """With its manner."""
+        return self.text + self.manner
 
 
 class Variety:
@@ -223,18 +207,13 @@ class Wording:
         the = self.the(index, keyframe)
         base = " ".join(self._fill(self.variety.pick(ways), the, self.room(index, keyframe)).split())
         self._named = the if leads else ""
-        goes = walks or keyframe.skill in RISINGS
         manner = _VERB.sub(lambda verb: past(verb[1]), self._manner(manners))
         return Phrase(
             text=_VERB.sub(lambda verb: past(verb[1]), base),
             keyframes=indices,
-            gerund=_VERB.sub(lambda verb: gerund(verb[1]), base) if goes else "",
             manner=manner,
             skill=keyframe.skill,
-            mood=mood,
             at="" if keyframe.on_floor else the,
-            word="" if keyframe.on_floor else keyframe.piece[0],
-            deeds=frozenset(base for word in re.findall(r"\w+ing\b", keyframe.caption) for base in bases(word)),
             leads=leads,
             stays=stays or keyframe.caption in known.still,
             begins=keyframe.skill in RISINGS,
@@ -264,7 +243,7 @@ class Wording:
         return self.voice.fill(
             template,
             the=name,
-            on=f"{'in' if the.endswith(_IN) else 'on'} {name}",
+            on=f"{_on(the)} {name}",
             onto=f"{'into' if the.endswith(_DEEP) else 'onto'} {name}",
             **{blank: way.format(the=the, room=room) for blank, way in ways.items()},
         )
@@ -277,10 +256,19 @@ class Wording:
         name = self.places[index][0] if index in self.places else display_name(word)
         return f"the {'other ' if instance > 1 else ''}{name.removeprefix('the ')}"
 
+    def on(self, index: int, keyframe: Keyframe) -> str:
+        """Where it has the body rest: "in the armchair"."""
+        the = self.the(index, keyframe)
+        return f"{_on(the)} {the}"
+
     def room(self, index: int, keyframe: PlannedKeyframe) -> str:
         """How its room is called, "the room" where it has none."""
         room = self.places[index][1] if index in self.places else (keyframe.room or "room")
         return f"the {room.replace('_', ' ').lower().removeprefix('the ')}"
+
+
+def _on(the: str) -> str:
+    return "in" if the.endswith(_IN) else "on"
 
 
 def touches(keyframe: Keyframe) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from planner_service.llm.protocol import LanguageModel
 from planner_service.llm.structured_output import ask
 from planner_service.narration.keyframe_phrases import Places
 from planner_service.narration.narrative_voice import Voice
-from planner_service.narration.narrator import Span, Told
+from planner_service.narration.told import Span, Told
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, legible
 from scene_graphs.furniture import catalogue, display_name, is_minor
 

@@ -24,7 +24,7 @@ from scene_graphs.errors import UserError
 if TYPE_CHECKING:
     from motion_backend.motion import Motion
     from motion_backend.rendering.film_picture import Planes
-    from planner_service.narration.narrator import Told
+    from planner_service.narration.told import Told
     from planner_service.pipeline import Story
     from scene_graphs.home import Home
 

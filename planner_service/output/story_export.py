@@ -19,6 +19,7 @@ from motion_backend.metrics.figure_limits import held_against
 from motion_backend.motion import Note
 from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
+from planner_service.narration.told import UNSEEN
 from planner_service.output.film import Filmed, write_film
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
@@ -146,8 +147,9 @@ def story_to_markdown(story: Story) -> str:
         [
             f"# {planned.told.title}",
             "",
-            planned.told.text,
+            planned.told.marked(lambda words: f"*{words}*"),
             "",
+            *([UNSEEN, ""] if planned.told.thoughts else []),
             "## How it was made",
             "",
             f"Theme: {script.theme}",
@@ -208,9 +210,7 @@ def story_to_dict(story: Story) -> dict[str, Any]:
     planned = story.planned
     return {
         "theme": planned.script.theme,
-        "title": planned.told.title,
-        "text": planned.told.text,
-        "spans": [{"start": s.start, "end": s.end, "keyframes": list(s.keyframes)} for s in planned.told.spans],
+        **planned.told.to_dict(),
         "seed": planned.request.seed,
         "backend": planned.request.backend,
         "character": vars(planned.character),

@@ -185,6 +185,11 @@ class Beat(BaseModel):
         return self.text in self.unshown
 
     @property
+    def seen(self) -> bool:
+        """Whether it is planned that the body is seen doing it, or in its mood."""
+        return self.kind in ("deed", "feeling") and not (self.why or self.who or self.stood_for)
+
+    @property
     def asked(self) -> bool:
         """Whether the theme says that it happens: all but what is left undone."""
         return self.kind != "undone"

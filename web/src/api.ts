@@ -1,7 +1,7 @@
 /** The service's resources, and the calls that the page makes. */
 
 import type { Emotion } from "./emotions";
-import type { Span } from "./spans";
+import type { Letters, Span } from "./spans";
 
 export type State = "queued" | "running" | "succeeded" | "failed" | "cancelled";
 export type Stage = "plan" | "furnish" | "narrate" | "act" | "move" | "judge" | "film";
@@ -131,6 +131,7 @@ export interface Story extends Summary {
   readonly encoder: string | null;
   readonly text: string | null;
   readonly spans: readonly Span[];
+  readonly thoughts: readonly Letters[];
   readonly beats: readonly Beat[];
   readonly repairs: readonly string[];
   readonly keyframes: readonly Keyframe[];

@@ -7,8 +7,16 @@ export interface Span {
   readonly keyframes: readonly number[];
 }
 
+/** Letters of the text that tell what the body is not seen doing. */
+export interface Letters {
+  readonly start: number;
+  readonly end: number;
+}
+
 export interface Piece {
   readonly text: string;
+  /** Whether the body is not seen doing it. */
+  readonly thought: boolean;
   /** Index of its span; null for words that tell no keyframe. */
   readonly span: number | null;
 }
@@ -28,16 +36,27 @@ export function spanOf(spans: readonly Span[], keyframe: number): number | null 
   return best;
 }
 
-/** The text's paragraphs, each cut where spans begin and end. Spans that are out of bounds or overlap are left out. */
-export function paragraphs(text: string, spans: readonly Span[]): Piece[][] {
+/**
+ * The text's paragraphs, each cut where spans and thoughts begin and end. Spans that are out of bounds or overlap are left
+ * out.
+ */
+export function paragraphs(text: string, spans: readonly Span[], thoughts: readonly Letters[] = []): Piece[][] {
   const points = offsets(text);
   const ordered = spans.map((span, index) => ({ span, index })).sort((a, b) => a.span.start - b.span.start);
   const result: Piece[][] = [[]];
+  const bounds = thoughts.flatMap(({ start, end }) => [start, end]).sort((a, b) => a - b);
   const put = (from: number, to: number, span: number | null): void => {
+    const inside = bounds.find((bound) => bound > from && bound < Math.min(to, text.length));
+    if (inside !== undefined) {
+      put(from, inside, span);
+      put(inside, to, span);
+      return;
+    }
+    const thought = thoughts.some(({ start, end }) => start <= from && from < end);
     const parts = text.slice(points(from), points(to)).split(/\n\s*\n/);
     for (const [number, part] of parts.entries()) {
       if (number > 0) result.push([]);
-      if (part) result.at(-1)?.push({ text: part, span });
+      if (part) result.at(-1)?.push({ text: part, thought, span });
     }
   };
   let at = 0;

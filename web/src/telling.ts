@@ -3,10 +3,15 @@
 import type { Story } from "./api";
 import { isStill } from "./appearance";
 import { fill, h } from "./dom";
-import { paragraphs, spanOf, type Span } from "./spans";
+import { paragraphs, spanOf, type Piece, type Span } from "./spans";
 
 /** Milliseconds after a reader's own scrolling before the text follows the film again. */
 const READING_MS = 6000;
+
+/** Told words; slanted where the body is not seen doing what they say. */
+function words({ text, thought }: Piece): string | HTMLElement {
+  return thought ? h("em", { class: "unseen", title: "told, and not seen: the body does not show it" }, text) : text;
+}
 
 export class Telling {
   readonly element: HTMLElement;
@@ -31,8 +36,8 @@ export class Telling {
     this.#spans = story.spans;
     this.#sentences.clear();
     this.#current = null;
-    const cut = story.text ? paragraphs(story.text, story.spans) : [];
-    fill(this.element, ...cut.map((pieces) => h("p", {}, ...pieces.map((piece) => (piece.span === null ? piece.text : this.#sentence(piece.text, piece.span))))));
+    const cut = story.text ? paragraphs(story.text, story.spans, story.thoughts) : [];
+    fill(this.element, ...cut.map((pieces) => h("p", {}, ...pieces.map((piece) => (piece.span === null ? words(piece) : this.#sentence(words(piece), piece.span))))));
     const first = this.element.querySelector<HTMLElement>(".moment");
     if (first) first.tabIndex = 0;
   }
@@ -54,7 +59,7 @@ export class Telling {
     return span === null ? [] : (this.#sentences.get(span) ?? []);
   }
 
-  #sentence(text: string, span: number): HTMLElement {
+  #sentence(text: string | HTMLElement, span: number): HTMLElement {
     const go = (): void => {
       const keyframe = this.#spans[span]?.keyframes[0];
       if (keyframe !== undefined) this.#seek(keyframe);

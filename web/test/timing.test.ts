@@ -50,6 +50,13 @@ describe("spans", () => {
     expect(cut[0]!.map((piece) => piece.span)).toEqual([null, 0]);
   });
 
+  test("what is not seen is cut out of spans and of the words between them", () => {
+    const cut = paragraphs("One day he ran, it rained, and fell.", [{ start: 11, end: 25, keyframes: [0] }], [{ start: 16, end: 25 }]);
+    expect(cut[0]!.map((piece) => piece.text)).toEqual(["One day he ", "ran, ", "it rained", ", and fell."]);
+    expect(cut[0]!.map((piece) => piece.thought)).toEqual([false, false, true, false]);
+    expect(cut[0]!.map((piece) => piece.span)).toEqual([null, 0, 0, null]);
+  });
+
   test("characters beyond the basic plane count once", () => {
     const cut = paragraphs("🙂 ok. Sat.", [{ start: 6, end: 10, keyframes: [0] }]);
     expect(cut[0]!.map((piece) => piece.text)).toEqual(["🙂 ok. ", "Sat."]);

@@ -211,6 +211,13 @@ class Span(BaseModel):
     keyframes: list[int]
 
 
+class Letters(BaseModel):
+    """A stretch of the told text."""
+
+    start: int = Field(description="First character.")
+    end: int = Field(description="Behind the last one.")
+
+
 class SegmentShown(BaseModel):
     """Frames of a keyframe that one backend made."""
 
@@ -381,6 +388,7 @@ class StoryShown(StorySummary):
     encoder: str | None = Field(description="The sentence encoder that ranked the library.")
     text: str | None
     spans: list[Span] = []
+    thoughts: list[Letters] = Field([], description="What of `text` the body is not seen doing.")
     beats: list[BeatShown] = Field(
         [], description="What the theme says, in order; `why` says why one is not acted, and `kind` what it is."
     )

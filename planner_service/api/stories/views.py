@@ -81,7 +81,7 @@ def story_shown(record: Record) -> Json:
         "motion": {"frames": frames, "duration": round(frames / FPS, 3), "complete": complete},
         "report": made.get("report"),
     }
-    lists = {name: made.get(name, []) for name in ("spans", "repairs", "short_scripts")}
+    lists = {name: made.get(name, []) for name in ("spans", "thoughts", "repairs", "short_scripts")}
     return story_summary(record, frames) | shown | lists
 
 

@@ -29,7 +29,7 @@ from motion_backend.rendering.motion_figures import body_solids, home_props
 from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
 from motion_backend.skeleton import INDEX
-from planner_service.narration.narrator import Span, Told
+from planner_service.narration.told import Span, Told
 from planner_service.output.film import subtitles
 
 SIZE = (96, 54)

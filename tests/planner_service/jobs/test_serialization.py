@@ -13,6 +13,7 @@ from motion_backend.motion import Character, Emotion
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.jobs import serialization
 from planner_service.library.library import Shelves
+from planner_service.narration.told import Told
 from planner_service.pipeline import Pipeline, Planned, StoryRequest, request_from_dict, request_to_dict
 from planner_service.scripts.script import Keyframe
 
@@ -58,7 +59,7 @@ def test_a_furnished_script_comes_back_as_it_was(planned: Planned) -> None:
 
 
 def test_a_told_story_comes_back_as_it_was(planned: Planned) -> None:
-    assert serialization.told_from_dict(through_json(serialization.told_to_dict(planned.told))) == planned.told
+    assert Told.from_dict(through_json(planned.told.to_dict())) == planned.told
 
 
 def test_a_body_goes_on_from_json_exactly_as_from_memory(planned: Planned) -> None:

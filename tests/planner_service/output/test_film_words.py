@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from motion_backend.motion import FPS
-from planner_service.narration.narrator import Span, Told
+from planner_service.narration.told import Span, Told
 from planner_service.output.film import LETTERS, READ, Filmed, subtitles
 from planner_service.pipeline import Pipeline, StoryRequest
 

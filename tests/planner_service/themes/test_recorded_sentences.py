@@ -9,8 +9,8 @@ from recorded import agrees
 
 from motion_backend.motion import Character
 from planner_service.composition.deed_lexicon import deed_of, object_of, room_of, unshown
-from planner_service.narration.beat_clause import event, purpose
 from planner_service.narration.narrative_voice import Voice
+from planner_service.narration.retelling import retell
 from planner_service.themes.beats import ReadBeat, ThemeError, beats_of
 from planner_service.themes.details import details_of
 from planner_service.themes.protagonist import cast_by, hero_of
@@ -112,10 +112,12 @@ def told(text: str) -> dict[str, Any]:
     clauses = clauses_of_text(text)
     hero = hero_of(clauses)
     who = cast_by(text, Character())
+    beats = beats_of(text)
     return {
         "about": f"{hero}: {who.name}, {who.pronouns}, {who.age}",
         "clauses": [line(clause) for clause in clauses],
-        "beats": [beat_line(beat, who.pronouns, Voice("Sam", "they")) for beat in beats_of(text)],
+        "beats": [beat_line(beat) for beat in beats],
+        "told": retell(text, [one.beat for one in beats], Voice.of(who)).text,
     }
 
 
@@ -126,14 +128,13 @@ def line(clause: Clause) -> str:
     return " | ".join([*words, f"{clause.sentence}.{clause.place}"])
 
 
-def beat_line(read: ReadBeat, hero: str, voice: Voice) -> str:
-    """What a beat says, what a body does for it, and how it is told."""
+def beat_line(read: ReadBeat) -> str:
+    """What a beat says, and what a body does for it."""
     beat, deed = read.beat, deed_of(read.clause)
     does = f"{deed.skill} at {', '.join(deed.pieces)}{' (named)' * deed.named}" if deed else "nothing"
     mood = f"{beat.emotion}{'!' * read.sure}"
     besides = [*details_of(read.clause), *unshown(read.clause, deed.pieces if deed else ())]
-    happens = event(beat, hero, voice)
     return " | ".join([
         beat.text, beat.kind, beat.who, mood, read.room or "", room_of(read.clause) or "", does,
-        object_of(read.clause), "; ".join(besides), happens.text if happens else "", purpose(beat, hero, voice),
+        object_of(read.clause), "; ".join(besides),
     ])  # fmt: skip

@@ -1,0 +1,393 @@
+"""A theme told again in its own sentences: in the past, of the story's person, with where each beat stands in it.
+
+Words are changed one by one where their forms tell what they are; what is not sure stays as it was written.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from difflib import SequenceMatcher
+from itertools import groupby, pairwise
+from typing import Final
+
+from planner_service.narration.narrative_voice import Voice
+from planner_service.narration.story_words import story_words
+from planner_service.narration.tense import bases, form_of, in_past
+from planner_service.scripts.script import Beat
+from planner_service.themes.lexicon import grammar, is_adjective, is_verb, lemma_of, past
+from planner_service.themes.protagonist import called, hero_of
+from planner_service.themes.sentence_parser import clauses_of_text
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
+from planner_service.themes.verb_finder import is_plural
+from scene_graphs.furniture import is_known
+
+_TOKEN: Final = re.compile(r"[^\W_]+(?:['’-][^\W_]+)*|\s+|.")
+_QUOTED: Final = re.compile(r"[“\"][^”\"]*[”\"]")
+_END: Final = re.compile(r"[.!?…]+[\"”’')\]]*(?=\s|$)|\n+")
+_LEAST: Final = 0.4
+"""Share of a beat's words that stand together in the theme where it is told."""
+_ANYBODY: Final = frozenset(("person", "character", "protagonist", "man", "woman", "human", "someone", "somebody"))
+"""Nouns that a name says all of."""
+_NOBODY: Final = ("person", "character", "protagonist")
+"""Those of them that are no words of a story."""
+_FIRST: Final = {"i": "they", "me": "them", "my": "their", "mine": "theirs", "myself": "themself"}
+_SECOND: Final = {"you": "they", "your": "their", "yours": "theirs", "yourself": "themself"}
+_THIRD: Final = {
+    "he": {"he": "they", "him": "them", "his": "their", "himself": "themself"},
+    "she": {"she": "they", "her": "their", "hers": "theirs", "herself": "themself"},
+    "they": {"they": "they", "them": "them", "their": "their", "theirs": "theirs", "themselves": "themself"},
+}
+_OWNS: Final = re.compile(r"\s+(?!(?:and|to|in|on|at|with|from|for|by|as|of|the|a|an|his|that)\b)\w")
+"""What follows "her" where it owns that."""
+_ENDINGS: Final = {"m": "am", "re": "are", "s": "is", "ve": "have", "ll": "will"}
+_SHORT: Final = re.compile(r"([a-z]+)'(m|re|s|ve|ll)")
+_BASE_AFTER: Final = frozenset(("can", "will", "may", "must", "could", "would", "might", "should", "shall", "to", "not",
+                                "did", "does", "do", "let", "lets", "cannot"))  # fmt: skip
+"""Words before a verb that has no tense."""
+_TOLD_IN_PAST: Final = frozenset(("was", "were", "had", "did", "could", "would", "might", "should"))
+_AMBIGUOUS: Final = frozenset(("can", "will", "may", "must", "do", "have", "being", "been", "be", "having", "doing"))
+"""Helpers that are told in the past only after a subject."""
+_SUBJECTS: Final = frozenset(("he", "she", "it", "they", "i", "we", "you", "who", "which", "that", "there"))
+_SINGULAR: Final = frozenset(("he", "she", "it", "who"))
+_PLURAL: Final = frozenset(("i", "we", "you", "they"))
+"""Who does things in verbs' base forms."""
+_TENSELESS: Final = ("ing", "participle")
+
+
+@dataclass
+class Token:
+    """A word, a mark or white space of a theme, and how it is told."""
+
+    text: str
+    told: str
+    quoted: bool = False
+    before: str = ""
+    """Words that are told before it and are not the theme's."""
+    is_name: bool = False
+    """Whether it stands for the story's person."""
+
+    @property
+    def low(self) -> str:
+        """In small letters, with a straight apostrophe."""
+        return self.text.lower().replace("’", "'")
+
+    @property
+    def is_word(self) -> bool:
+        """Whether it is no mark and no white space."""
+        return self.text[0].isalnum()
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """The words of one beat: tokens from `start` to `end`, exclusive; its verb, where one was found."""
+
+    beat: int
+    start: int
+    end: int
+    verb: int | None = None
+
+
+@dataclass
+class Retelling:
+    """A theme's tokens as they are told, and where its beats stand among them."""
+
+    tokens: list[Token]
+    stretches: list[Stretch] = field(default_factory=list)
+    """In the order of the theme, none over another."""
+    ends: list[int] = field(default_factory=list)
+    """The last token of each sentence."""
+
+    @property
+    def text(self) -> str:
+        """The whole of it."""
+        return "".join(token.before + token.told for token in self.tokens)
+
+    @property
+    def starts(self) -> list[int]:
+        """The first token of each sentence."""
+        return [0, *(end + 1 for end in self.ends if end + 1 < len(self.tokens))]
+
+    def words(self, stretch: Stretch) -> str:
+        """How a stretch is told."""
+        return "".join(token.told for token in self.tokens[stretch.start : stretch.end])
+
+    def asides(self) -> Iterator[range]:
+        """Tokens between beats that tell more than who does what, and when: of which no beat is made."""
+        of = {at for one in self.stretches for at in range(one.start, one.end)}
+        small = grammar().marks | grammar().prepositions | grammar().joints | grammar().adverbs | _SUBJECTS
+        for free, run in groupby(range(len(self.tokens)), key=lambda at: at not in of and at not in self.ends):
+            places = [at for at in run if self.tokens[at].is_word]
+            telling = [at for at in places if self.tokens[at].low not in small and not self.tokens[at].is_name]
+            if free and len(telling) > 1:
+                yield range(places[0], places[-1] + 1)
+
+    def part(self, stretch: Stretch, words: str) -> range:
+        """The tokens of a stretch where some of its words stand together; none where they do not."""
+        asked = [token.low for token in _tokens(words) if token.is_word]
+        found = next(_found(self.tokens[stretch.start : stretch.end], asked), range(0))
+        return range(stretch.start + found.start, stretch.start + found.stop) if found else found
+
+    def end_of(self, stretch: Stretch) -> int:
+        """The last token of the sentence that a stretch ends in."""
+        return next(end for end in self.ends if end >= stretch.end - 1)
+
+
+def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
+    """A theme in the past, told of a voice's person."""
+    theme = re.sub(r"(?<!\.)\.\.(?!\.)", ".", theme)
+    clauses = clauses_of_text(theme)
+    hero = hero_of(clauses)
+    own = called(clauses, hero) or hero.lower()
+    told = Retelling(_tokens(theme))
+    told.stretches = _located(told.tokens, beats)
+    told.ends = _ends(theme, told.tokens)
+    _put_in_past(told, plain=own in _PLURAL, all_of_it=_is_present(told))
+    _tell_of(voice, told.tokens, hero, own)
+    _say_who(voice, told, beats)
+    _capitalise(told)
+    return told
+
+
+def _tokens(theme: str) -> list[Token]:
+    quoted = [(one.start(), one.end()) for one in _QUOTED.finditer(theme)]
+    return [
+        Token(one[0], one[0], any(start <= one.start() < end for start, end in quoted))
+        for one in _TOKEN.finditer(theme)
+    ]
+
+
+def _located(tokens: Sequence[Token], beats: Sequence[Beat]) -> list[Stretch]:
+    """Where most of each beat's words stand together."""
+    places = [at for at, token in enumerate(tokens) if token.is_word]
+    words = [tokens[at].low for at in places]
+    found: list[Stretch] = []
+    for index, beat in enumerate(beats):
+        asked = [word.low for word in _tokens(beat.text) if word.is_word]
+        verb = _verb(asked, beat.who)
+        matcher = SequenceMatcher(None, words, asked, autojunk=False)
+        run = matcher.find_longest_match()
+        own = matcher.find_longest_match(blo=verb)  # "with a sigh of relief, | Ida takes off her coat"
+        run = own if own.b == verb and 2 * own.size > run.size else run
+        if not run.size or run.size < _LEAST * len(asked):
+            continue
+        words[run.a : run.a + run.size] = [""] * run.size  # which stand for no other beat
+        verb += run.a - run.b
+        inside = run.a <= verb < run.a + run.size
+        last = places[run.a + run.size - 1]
+        found.append(Stretch(index, places[run.a], last + 1, places[verb] if inside else None))
+    return sorted(found, key=lambda one: one.start)
+
+
+def _verb(words: Sequence[str], who: str) -> int:
+    """Where the verb of a beat is likely: after who does it, and adverbs."""
+    doer = [token.low for token in _tokens(who) if token.is_word]
+    at = len(doer) if list(words[: len(doer)]) == doer else 0
+    while at < len(words) and _is_adverb(words[at]):
+        at += 1
+    return at
+
+
+def _is_adverb(word: str) -> bool:
+    return word in grammar().adverbs | {"neither", "nor"} or (word.endswith("ly") and not bases(word))
+
+
+def _ends(theme: str, tokens: Sequence[Token]) -> list[int]:
+    """The last token of each sentence."""
+    at, ends, stops = 0, [], {one.end() for one in _END.finditer(theme)}
+    for index, token in enumerate(tokens):
+        at += len(token.text)
+        if at in stops:
+            ends.append(index)
+    return ends if ends[-1:] == [len(tokens) - 1] else [*ends, len(tokens) - 1]
+
+
+def _is_present(told: Retelling) -> bool:
+    """Whether more of the beats' verbs are in the present than in the past."""
+    verbs = [told.tokens[one.verb].low for one in told.stretches if one.verb is not None]
+    after = sum(verb in _TOLD_IN_PAST or form_of(verb) == "past" for verb in verbs)
+    tenseless = sum(form_of(verb) in _TENSELESS for verb in verbs)
+    return 2 * after <= len(verbs) - tenseless
+
+
+def _put_in_past(told: Retelling, plain: bool, all_of_it: bool) -> None:
+    """Every finite verb, or what "I" and "you" do in the midst of what is past; `plain`: the theme's person does things
+    in verbs' base forms."""
+    heads = {one.verb for one in told.stretches if one.verb is not None and not _is_list(told, one)}
+    joined = _joined_heads(told)
+    words = [(at, token) for at, token in enumerate(told.tokens) if token.is_word]
+    low = ["", "", *_low(told.tokens), ""]
+    for number, (at, token) in enumerate(words):
+        days = story_words().days
+        if not (all_of_it or (plain and {"i", "you"} & {one.strip(",") for one in low[number : number + 2]})):
+            continue
+        if pair := days.get(f"{token.low} {low[number + 3]}") if not token.quoted else None:
+            token.told, words[number + 1][1].told = pair.split(" ", 1)
+        elif not token.quoted and token.told == token.text:
+            new = days.get(token.low) or _past(low[number : number + 4], token.low, at in heads, plain or at in joined)
+            token.told = (new.capitalize() if token.text[0].isupper() else new) if new else token.told
+
+
+def _low(tokens: Sequence[Token]) -> Iterator[str]:
+    """Words in small letters, with a comma before those that a mark parts from the one before."""
+    mark = ""
+    for token in tokens:
+        if token.is_word:
+            yield f"{mark}{token.low}"
+            mark = ""
+        elif not token.text.isspace():
+            mark = ","
+
+
+def _joined_heads(told: Retelling) -> set[int]:
+    """Verbs without an ending that go on from one that has it: "he becomes excited, | run around the house"."""
+    pairs = ((one, other) for one, other in pairwise(told.stretches) if one.verb is not None and other.verb is not None)
+    return {
+        other.verb
+        for one, other in pairs
+        if other.verb is not None and other.verb == other.start and "to" not in told.words(one).lower().split()
+        and "".join(token.text for token in told.tokens[one.end : other.start]).strip(" ,") in ("", "and", "then")
+        and one.verb is not None and form_of(told.tokens[one.verb].low) == "present"
+    }  # fmt: skip
+
+
+def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None:
+    """A word, the third of four of `near`, in the past; None where it is no finite verb. `head`: whether a beat's verb
+    stands there."""
+    earlier, before, marked, follows = near
+    before = before.lstrip(",") if marked == word else ","
+    if before in _BASE_AFTER and word not in ("is", "are"):
+        return None
+    if short := _SHORT.fullmatch(word):
+        has = short[2] == "s" and form_of(follows) in ("participle", "past") and not is_adjective(follows)
+        known = short[1] in _SUBJECTS or (short[2] == "s" and short[1] in ("what", "where", "here", "how"))
+        return f"{short[1]} {_helper('has' if has else _ENDINGS[short[2]], short[1])}" if known else None
+    if word in story_words().helpers and word not in _TOLD_IN_PAST:
+        after = before in _SUBJECTS or (head and word in ("have", "do") and before)
+        return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
+    form, base = form_of(word), word in bases(word) and not (is_adjective(word) or _is_noun(word, before))
+    asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
+    if form == "present":
+        joined = before in ("and", "or", "then") and follows in story_words().lists["after_verbs"]
+        return in_past(word) if before in _SUBJECTS or ((head or joined) and not _is_noun(word, before)) else None
+    if (
+        form is None
+        and base
+        and not asked
+        and (before in _PLURAL or (head and (plain or before in _SINGULAR or is_plural(before))))
+    ):
+        return past(word)
+    return None
+
+
+def _helper(word: str, before: str) -> str:
+    several = word in ("are", "aren't") or before in ("they", "we", "you")
+    return story_words().helpers[word].format(was="were" if several else "was")
+
+
+def _is_noun(word: str, before: str) -> bool:
+    """Whether a word in -s names things: "the keys", "hands"."""
+    led = before in grammar().marks | grammar().prepositions | {"no", "some"}
+    return led or lemma_of(word) in theme_words()["body"] or not is_verb(word)
+
+
+def _is_list(told: Retelling, stretch: Stretch) -> bool:
+    """Whether a sentence begins with words that only name a thing, and where it goes: "Keys", "Shoes off"."""
+    start = max(one for one in told.starts if one <= stretch.start)
+    first, *rest = [token.low for token in told.tokens[stretch.start : stretch.end] if token.is_word]
+    known = lemma_of(first) in things() or is_known(first)
+    ways = story_words().lists["adverbs"] | {"on", "off", "up", "down", "out", "in", "away", "first", "next"}
+    opens = not any(token.is_word for token in told.tokens[start : stretch.start])
+    return opens and known and len(rest) < 2 and ways.issuperset(rest)
+
+
+def _tell_of(voice: Voice, tokens: Sequence[Token], hero: str, own: str) -> None:
+    """The voice's pronouns in place of those of the theme's person, and its name where that is first spoken of."""
+    mine = {"i": _FIRST, "we": _FIRST, "you": _SECOND}.get(hero.lower(), {})
+    blanks = {**mine, **(_THIRD.get(own, {}) if own != voice.pronouns else {})}
+    words = [(at, token) for at, token in enumerate(tokens) if token.is_word and not token.quoted]
+    for at, token in words:
+        word, space, rest = token.told.partition(" ")  # "I was" of "I'm"
+        if blank := blanks.get(word.lower()):
+            owns = word.lower() != "her" or _OWNS.match("".join(one.text for one in tokens[at + 1 : at + 3]))
+            token.told, token.is_name = voice[blank if owns else "them"] + space + rest, True
+    _name(voice, tokens, hero)
+    for (_, before), (_, token) in pairwise(words):
+        if before.told.lower() == "they" and token.told == "was":
+            token.told = "were"
+    for _, token in words:
+        token.told = re.sub(r"^([Tt]hey) was$", r"\1 were", token.told)
+
+
+def _name(voice: Voice, tokens: Sequence[Token], hero: str) -> None:
+    """The person's name for the first words for whom the theme is about; with these, where they tell more."""
+    wanted = [token.low for token in _tokens(hero) if token.is_word]
+    place = next(_found(tokens, wanted), None)
+    for at in place or ():
+        tokens[at].is_name = True
+    if place is None or hero.lower() in ("who", "which", "that"):
+        return
+    own = {token.low for token in _tokens(voice.name) if token.is_word} - grammar().marks
+    if not own or own - {*wanted}:  # "a woman" is called "the woman" later
+        noun = "".join(token.text for token in tokens[place.start : place.stop])
+        plain = len(wanted) == 1 or {wanted[0], wanted[-1]} & _ANYBODY
+        _call(tokens, place, voice.name if plain else f"{voice.name}, {noun[:1].lower()}{noun[1:]},")
+    if wanted[-1] in _NOBODY:
+        for article in ("the", "a"):
+            for again in _found(tokens, [article, wanted[-1]]):
+                _call(tokens, again, voice.name)
+
+
+def _call(tokens: Sequence[Token], place: range, name: str) -> None:
+    """Some tokens told as a name, and what was told of a contraction: "he was" of "I'm"."""
+    rest = tokens[place.start].told.partition(" ")[2]
+    for at in place:
+        tokens[at].told, tokens[at].is_name = "", True
+    tokens[place.start].told = f"{name} {rest}".rstrip()
+
+
+def _found(tokens: Sequence[Token], words: Sequence[str]) -> Iterator[range]:
+    """Where words stand one after the other, are not quoted, and are still told."""
+    places = [at for at, token in enumerate(tokens) if token.is_word]
+    alone = len(words) == 1
+    for number in range(len(places) - len(words) + 1 if words else 0):
+        run = places[number : number + len(words)]
+        low = [tokens[at].low for at in run]
+        low = [short[1] if alone and (short := _SHORT.fullmatch(word)) else word for word in low]
+        if low == list(words) and all(tokens[at].told and not tokens[at].quoted for at in run):
+            yield range(run[0], run[-1] + 1)
+
+
+def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
+    """Who does what a sentence begins with: "Comes home." """
+    named = voice.name.lower() in told.text.lower()
+    for stretch in told.stretches:
+        start = max(one for one in told.starts if one <= stretch.start)
+        opens = not any(token.is_word for token in told.tokens[start : stretch.start])
+        verb = told.tokens[stretch.verb] if stretch.verb is not None else None
+        later = {token.told.lower() for token in told.tokens[stretch.end : told.end_of(stretch)]}
+        alone = later.isdisjoint({"he", "she", "they", *voice.name.lower().split()[-1:]})  # "slighted, Ida withdrew"
+        if opens and alone and verb is not None and beats[stretch.beat].seen and _is_finite(verb.told):
+            first = told.tokens[stretch.start]
+            first.told = first.told[:1].lower() + first.told[1:]
+            first.before = f"{voice['they'] if named else voice.name} "
+            if verb.told == "was" and named:
+                verb.told = voice.was(voice["they"])
+            named = True
+
+
+def _is_finite(verb: str) -> bool:
+    first = verb.split()[0].lower()
+    return first in _TOLD_IN_PAST or (form_of(first) == "past" and not is_adjective(first))
+
+
+def _capitalise(told: Retelling) -> None:
+    """Begin sentences with a capital where the theme does, and wherever other words begin them now."""
+    for start in told.starts:
+        first = next((one for one in told.tokens[start:] if one.before or (one.is_word and one.told)), None)
+        if first is not None and first.before:
+            first.before = first.before[:1].upper() + first.before[1:]
+        elif first is not None and (first.text[:1].isupper() or start == 0):
+            first.told = first.told[:1].upper() + first.told[1:]
