@@ -270,7 +270,7 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     form, base = form_of(word), word in bases(word) and not (is_adjective(word) or _is_noun(word, before))
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
-        joined = before in ("and", "or", "then") and follows in story_words().lists["after_verbs"]
+        joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
         return in_past(word) if before in _SUBJECTS or ((head or joined) and not _is_noun(word, before)) else None
     if (
         form is None
@@ -298,7 +298,7 @@ def _is_list(told: Retelling, stretch: Stretch) -> bool:
     start = max(one for one in told.starts if one <= stretch.start)
     first, *rest = [token.low for token in told.tokens[stretch.start : stretch.end] if token.is_word]
     known = lemma_of(first) in things() or is_known(first)
-    ways = story_words().lists["adverbs"] | {"on", "off", "up", "down", "out", "in", "away", "first", "next"}
+    ways = grammar().adverbs | {"on", "off", "up", "down", "out", "in", "away", "first", "next"}
     opens = not any(token.is_word for token in told.tokens[start : stretch.start])
     return opens and known and len(rest) < 2 and ways.issuperset(rest)
 

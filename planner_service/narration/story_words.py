@@ -26,13 +26,6 @@ class Said:
 class StoryWords:
     """data/story_words.toml."""
 
-    states: str
-    """Verbs for how somebody is, apart by spaces; so the next."""
-    alone: str
-    """Verbs that can stand alone after "and"."""
-    adverbs: str
-    """Words before a verb that belong to it."""
-    subjects: str
     after_verbs: str
     """Words that follow a verb rather than a noun."""
     helpers: dict[str, str]
@@ -60,11 +53,6 @@ class StoryWords:
             name: tuple((pattern_at(f"{name}.{at}.pattern", row.pattern), row.words) for at, row in enumerate(said))
             for name, said in rows.items()
         }
-
-    @cached_property
-    def lists(self) -> dict[str, frozenset[str]]:
-        """The lists of words as sets."""
-        return {name: frozenset(words.split()) for name, words in vars(self).items() if isinstance(words, str)}
 
 
 @cache

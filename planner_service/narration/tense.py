@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Final, Literal
 
-from planner_service.themes.lexicon import gerund, is_adjective, kinds_of, participle, past, third_person
+from planner_service.themes.lexicon import gerund, kinds_of, participle, past, third_person
 
 Form = Literal["past", "present", "ing", "participle"]
 """Of verbs that are not in their base form; present is that of he and she."""
@@ -29,12 +29,6 @@ def bases(word: str) -> tuple[str, ...]:
     if not known and len(word) > 4 and word.endswith(("s", "ed", "ing")):
         known = getAllLemmasOOV(word, upos="VERB")
     return tuple(known.get("VERB", ()))
-
-
-@cache
-def says_how(word: str) -> bool:
-    """Whether a word can say how somebody is: tired, exhausted, lonely."""
-    return is_adjective(word) or any(participle(base) == word != base for base in bases(word))
 
 
 @cache

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from itertools import pairwise
 from typing import Final
@@ -15,8 +14,6 @@ from planner_service.themes.verb_finder import Token, tokens_of
 
 _LEADS: Final = frozenset(("with", "without", "for", "like", "as", "despite", "after", "since", "before", "until"))
 """Words before which a deed has been told, and after which stands how, for whom or when."""
-_REASONS: Final = frozenset(("after", "since", "before", "until", "for"))
-"""Those of them that tell why or when."""
 _SENSED: Final = frozenset(("sound", "sight", "thought", "smell", "news", "noise", "mention", "idea", "click", "ring"))
 """At which something is done: "at the sound of the key"."""
 _LINKS: Final = frozenset((",", "and", "or", "then"))
@@ -52,16 +49,6 @@ def _tells_when(text: str) -> bool:
     known = grammar()
     small = known.prepositions | known.marks | known.numbers | known.times | known.adverbs | MANNER | {"so"}
     return all(token.low in small or lemma_of(token.low) in small for token in tokens_of(text))
-
-
-def core_of(text: str, details: Sequence[str]) -> str:
-    """A clause's words without its details, but for those that tell why or when."""
-    reasons = False  # what follows them belongs to them: "after a quarrel | with her boss"
-    for detail in details:
-        reasons = reasons or detail.split()[0].lower() in _REASONS
-        text = text if reasons else text.replace(detail, "")
-    text = re.sub(r"\s*,[\s,]*", ", ", " ".join(text.split()))
-    return re.sub(r"(?:[\s,;]|\b(?:and|or|then)$)+$", "", text)
 
 
 def _starts(tokens: Sequence[Token], at: int) -> bool:
