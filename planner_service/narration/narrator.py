@@ -27,7 +27,7 @@ from scene_graphs.furniture import class_of, display_name, is_known
 
 _FEWEST_LOCATED: Final = 0.5
 """Share of the beats that must stand in the theme for it to be told; else they are told one after the other."""
-_MOST_OF_ONE: Final = 1
+_MOST_OF_ONE: Final = 2
 """Keyframes, those that only lead to others aside, which the words of one beat tell."""
 _PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
 Rows = Sequence[tuple[int, PlannedKeyframe]]

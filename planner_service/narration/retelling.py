@@ -170,7 +170,8 @@ def _located(tokens: Sequence[Token], beats: Sequence[Beat]) -> list[Stretch]:
         matcher = SequenceMatcher(None, words, asked, autojunk=False)
         run = matcher.find_longest_match()
         own = matcher.find_longest_match(blo=verb)  # "with a sigh of relief, | Ida takes off her coat"
-        run = own if own.b == verb and 2 * own.size > run.size else run
+        has_verb = run.b <= verb < run.b + run.size
+        run = own if own.b == verb and not has_verb and 2 * own.size > run.size else run
         if not run.size or run.size < _LEAST * len(asked):
             continue
         words[run.a : run.a + run.size] = [""] * run.size  # which stand for no other beat
