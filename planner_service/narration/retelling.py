@@ -31,6 +31,7 @@ _LEAST: Final = 0.4
 """Share of a beat's words that stand together in the theme where it is told."""
 _ANYBODY: Final = frozenset(("person", "character", "protagonist", "man", "woman", "human", "someone", "somebody"))
 """Nouns that a name says all of."""
+_NO_ONE_PERSON: Final = frozenset(("who", "which", "that", "everyone", "everybody", "nobody", "all", "both"))
 _NOBODY: Final = ("person", "character", "protagonist")
 """Those of them that are no words of a story."""
 _FIRST: Final = {"i": "they", "me": "them", "my": "their", "mine": "theirs", "myself": "themself"}
@@ -328,7 +329,7 @@ def _name(voice: Voice, tokens: Sequence[Token], hero: str) -> None:
     place = next(_found(tokens, wanted), None)
     for at in place or ():
         tokens[at].is_name = True
-    if place is None or hero.lower() in ("who", "which", "that"):
+    if place is None or wanted[0] in _NO_ONE_PERSON:
         return
     own = {token.low for token in _tokens(voice.name) if token.is_word} - grammar().marks
     if not own or own - {*wanted}:  # "a woman" is called "the woman" later
