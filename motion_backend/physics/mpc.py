@@ -71,9 +71,10 @@ def _prices() -> Array:
 
 
 PRICES: Final = _prices()
-PRICES_RAISED: Final = PRICES * np.repeat([10.0, 1.0, 5.0, 1.0], [6, NV - 6, 6, NV - 6])
-"""The same where the body gets up from the floor: joints that are as planned are worth nothing there if the pelvis
-stays down, since hands and knees that are not where they should be carry nothing."""
+PRICES_PELVIS: Final = PRICES * np.repeat([10.0, 1.0, 5.0, 1.0], [6, NV - 6, 6, NV - 6])
+"""The same where the pelvis comes first. Where the body gets up from the floor, joints that are as planned are worth
+nothing if the pelvis stays down, since hands and knees that are not where they should be carry nothing. Where it lies
+down, the whole body would come to lie to one side of its place."""
 
 
 class Moment(NamedTuple):
@@ -209,7 +210,7 @@ class Controller:
         return pressure or Pressure()
 
     def _prices(self, at: int) -> Array:
-        return PRICES_RAISED if self.reference.raised[at] else PRICES
+        return PRICES_PELVIS if self.reference.raised[at] or self.reference.laid[at] else PRICES
 
     def _planned(self, at: int) -> State:
         return State(self.reference.qpos[at], self.reference.qvel[at])

@@ -49,6 +49,8 @@ class Plan:
     """(T, 4)."""
     raised: NDArray[np.bool_]
     """(T,) whether the body gets up from the floor, on hands and knees."""
+    laid: NDArray[np.bool_]
+    """(T,) whether it goes down to lie, or lies."""
     reaching: NDArray[np.bool_]
     """(T,) whether it reaches for something with its hands."""
 
@@ -57,7 +59,7 @@ class Plan:
 
     @property
     def _rows(self) -> tuple[Any, ...]:
-        return self.roots, self.local, self.contacts, self.raised, self.reaching
+        return self.roots, self.local, self.contacts, self.raised, self.laid, self.reaching
 
     def part(self, frames: slice) -> Plan:
         """Some of the frames."""
@@ -94,7 +96,8 @@ class Reference:
     wrists: Array
     """(T, 2, 4) local rotations, xyzw."""
     raised: NDArray[np.bool_]
-    """(T,) as of the plan."""
+    laid: NDArray[np.bool_]
+    """(T,) each, as of the plan."""
 
     def __len__(self) -> int:
         return len(self.qpos)
@@ -102,7 +105,7 @@ class Reference:
     def part(self, frames: slice) -> Reference:
         """Some of the frames."""
         moving = (self.qpos[frames], self.qvel[frames], self.controls[frames])
-        return Reference(*moving, self.planted[frames], self.wrists[frames], self.raised[frames])
+        return Reference(*moving, self.planted[frames], self.wrists[frames], self.raised[frames], self.laid[frames])
 
     @staticmethod
     def of(plan: Plan, skeleton: Skeleton, things: Obstacles | None = None) -> Reference:
@@ -114,7 +117,7 @@ class Reference:
         qpos = fold(plan.roots, local)
         qvel = speeds(qpos)
         wrists = local[:, [INDEX[f"{side}_wrist"] for side, _ in SIDES]]
-        return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists, plan.raised)
+        return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists, plan.raised, plan.laid)
 
 
 def _feet_lifted(plan: Plan, skeleton: Skeleton) -> Array:

@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.backend_protocol import History
+from motion_backend.body.zero_moment import GRAVITY
 from motion_backend.motion import FPS, Motion, Note, PhaseKind, Simulated
 from motion_backend.physics.generalized_coordinates import fold, speeds, unfold
 from motion_backend.physics.linear_model import State
-from motion_backend.physics.mjcf_character import NV
+from motion_backend.physics.mjcf_character import NV, mass_of
 from motion_backend.physics.mjcf_scene import Models, models_of, near_way
 from motion_backend.physics.mpc import Moment, stacked
 from motion_backend.physics.physics_options import Mode
-from motion_backend.physics.physics_record import forces_of
+from motion_backend.physics.physics_record import forces_of, weight_error
 from motion_backend.physics.reference import Plan, Reference
 from motion_backend.physics.tracker import Tracked
 from motion_backend.rotations import Array
@@ -45,7 +46,8 @@ class Task:
     def reference(self) -> Reference:
         """From the frame before the part to the end of what is looked ahead at."""
         before = np.zeros(len(self.past), dtype=bool)
-        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before, before)
+        contacts = np.array(self.past.contacts)
+        past = Plan(self.past.root_positions, self.past.local_rotations, contacts, before, before, before)
         boxes = scene_of(self.home).obstacles
         things = near_way(self._joints[self.plan.reaching], boxes) if self.plan.reaching.any() else None
         return Reference.of(past.followed_by(self.plan), self.skeleton, things).part(slice(len(past) - 1, None))
@@ -76,15 +78,16 @@ class Task:
 
     def motion(self, done: Tracked, planned: Motion, mode: Mode = Mode.MPC, why: str = "") -> Motion:
         """The simulated frames of a part, with the contacts that were felt."""
-        qpos, _ = stacked(done.moments[1:])
+        qpos, qvel = stacked(done.moments[1:])
         roots, local = unfold(qpos, self.reference.wrists[1 : len(done.moments)])
-        keyframe = int(planned.actions[0])
+        keyframe, speed = int(planned.actions[0]), np.linalg.norm(qvel[:, :3], axis=1)
+        weight = mass_of(self.skeleton.scale * REFERENCE_HEIGHT) * GRAVITY
         record = Simulated(
             keyframe, mode.value, round(len(qpos) / FPS, 3),
             max((float(pressure.root[0]) for pressure in done.pressures[1:]), default=0.0),
             resets=len(done.resets), rewinds=len(done.rewinds),
             rewound_seconds=round(done.rewound / FPS, 2), forces=forces_of(done.pressures[1:]),
-            why=why,
+            why=why, weight_error=weight_error(done.pressures[1:], speed, weight),
         )  # fmt: skip
         told = (f"fell, and was set back onto the plan {at / FPS:.1f} s into it" for at in done.resets)
         return replace(
@@ -107,15 +110,16 @@ def from_floor(motion: Motion) -> NDArray[np.bool_]:
     return found
 
 
-def reaching(motion: Motion) -> NDArray[np.bool_]:
-    """In which frames a motion reaches for something. (T,)."""
+def within(motion: Motion, *kinds: PhaseKind) -> NDArray[np.bool_]:
+    """In which frames a motion is in a phase of some kinds. (T,)."""
     found = np.zeros(len(motion), dtype=bool)
     for phase in motion.phases:
-        found[phase.start : phase.stop] |= phase.kind is PhaseKind.TOUCH
+        found[phase.start : phase.stop] |= phase.kind in kinds
     return found
 
 
 def plan_of(motion: Motion) -> Plan:
     """A motion's arrays, to be followed."""
     roots, local = motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64)
-    return Plan(roots, local, motion.contacts.astype(np.float64), from_floor(motion), reaching(motion))
+    laid, reaching = within(motion, PhaseKind.EDGE, PhaseKind.LIEDOWN), within(motion, PhaseKind.TOUCH)
+    return Plan(roots, local, motion.contacts.astype(np.float64), from_floor(motion), laid, reaching)

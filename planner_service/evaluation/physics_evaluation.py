@@ -37,8 +37,9 @@ DRAWN: Final = 1601
 """The seed of rooms and captions."""
 LIMITS: Final = {
     "slip": 4.0, "skate_ratio": 0.05, "floor_pen": 0.004, "jerk_ratio": 1.2, "cpu": 1.5, "contact_error": 0.05,
+    "weight_error": 0.05,
 }  # fmt: skip
-"""The most of each figure: cm/s, a share, metres, times the plan's, CPU-seconds a second, metres."""
+"""The most of each figure: cm/s, a share, metres, times the plan's, CPU-seconds a second, metres, of the weight."""
 Row = dict[str, Any]
 
 
@@ -95,6 +96,8 @@ def _row(plan: Performance, physics: Performance, cpu: float) -> Row:
         "planned": plan.figures.reached, "reason": physics.figures.reason, "made_by": made_by,
         "contact_error": physics.figures.to_dict()["contact_error"],
         "resets": told["resets"] if told else 0, "rewinds": told["rewinds"] if told else 0,
+        "weight_error": told["weight_error"] if told else None,
+        "execution": physics.figures.to_dict()["execution_time"],
         "cpu": cpu / physics.motion.duration, **_feet(physics.motion, plan.motion),
     }  # fmt: skip
 
@@ -163,6 +166,8 @@ def figures_of(rows: Sequence[Row]) -> dict[str, tuple[float, float, float]]:
     for name in (
         "reached",
         "contact_error",
+        "execution",
+        "weight_error",
         "slip",
         "slip_planned",
         "skate",

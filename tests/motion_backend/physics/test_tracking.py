@@ -9,6 +9,7 @@ import pytest
 from simulated import empty_room, stood, tracked, tracker_of, walk, walked
 
 from motion_backend.body.zero_moment import GRAVITY
+from motion_backend.motion import Phase, PhaseKind
 from motion_backend.physics.contact_forces import Pressure
 from motion_backend.physics.engine import engine
 from motion_backend.physics.mjcf_character import NU, mass_of
@@ -32,6 +33,7 @@ def test_a_body_stands_and_the_floor_carries_its_weight(seconds: float) -> None:
     assert away(plan, done).max() < 0.05
     carried = np.mean([pressure.total for pressure in done.pressures[-15:]])
     assert carried == pytest.approx(mass_of(1.70) * GRAVITY, rel=0.05)
+    assert carried == pytest.approx(np.mean([pressure.up[0] for pressure in done.pressures[-15:]]), rel=0.01)
     assert done.pressures[-1].planted.tolist() == [1, 1, 1, 1]
 
 
@@ -187,3 +189,27 @@ def test_getting_up_from_the_floor_is_looked_farther_ahead_and_the_pelvis_comes_
     prices = [Controller(empty_room(), data, tracker.reference, reader)._prices(at) for at in (0, 4)]
     assert (prices[1][:6] > prices[0][:6]).all()
     np.testing.assert_array_equal(prices[1][6:36], prices[0][6:36])
+
+
+def test_the_pelvis_comes_first_on_the_way_down_to_lie_with_no_more_looked_ahead() -> None:
+    plan = plan_of(walk())
+    down = np.arange(len(plan)) >= 4
+    laid, raised = (tracker_of(replace(plan, **{name: down})) for name in ("laid", "raised"))
+    data, reader = laid._scratch()
+    of = [
+        [Controller(empty_room(), data, one.reference, reader)._prices(at) for at in (3, 4)] for one in (laid, raised)
+    ]
+    np.testing.assert_array_equal(of[0], of[1])
+    assert (of[0][1][:6] > of[0][0][:6]).all()
+    assert not laid.reference.raised.any()
+    assert laid.reference.part(slice(3, 6)).laid.tolist() == [False, True, True]
+
+
+def test_a_plan_knows_where_it_goes_down_to_lie() -> None:
+    motion = walk().part(0, 40)
+    kinds = (PhaseKind.WALK, PhaseKind.EDGE, PhaseKind.LIEDOWN, PhaseKind.SITDOWN)
+    phases = tuple(Phase(kind, 10 * index, 10 * index + 10) for index, kind in enumerate(kinds))
+    plan = plan_of(replace(motion, phases=phases))
+    assert np.flatnonzero(plan.laid).tolist() == list(range(10, 30))
+    assert not plan.raised.any()
+    assert not plan.reaching.any()
