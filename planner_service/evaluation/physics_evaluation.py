@@ -10,6 +10,7 @@ import json
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -55,22 +56,25 @@ class PhysicsTrial:
 
 def draw_trials(skill: Skill, count: int, drawn: int = DRAWN) -> list[Trial]:
     """So many trials of a skill, each with its own caption, room and seed by chance, from a seed of all."""
+    return list(islice(_drawn(skill, drawn), count))
+
+
+def _drawn(skill: Skill, drawn: int) -> Iterator[Trial]:
+    """Trials of a skill without end: furnishing a room to see what it has places for takes a while."""
     rng = np.random.default_rng([drawn, list(Skill).index(skill)])
     rooms = [layout.id for layout in built_in_index().layouts]
     known = captions()[skill.value]
-    found: list[Trial] = []
-    while len(found) < count:
+    while True:
         trial = Trial(
             skill, str(rng.choice(known)), rooms[int(rng.integers(len(rooms)))], int(rng.integers(DRAWN, 1 << 31))
         )
         if places_for(skill, trial.caption, setting(trial.room)):
-            found.append(trial)
-    return found
+            yield trial
 
 
 def by_turns(skills: Sequence[Skill], count: int, drawn: int = DRAWN) -> Iterator[Trial]:
     """So many trials of each of some skills, one of each in turn: a run that is ended has as many of all."""
-    for turn in zip(*(draw_trials(skill, count, drawn) for skill in skills), strict=True):
+    for turn in islice(zip(*(_drawn(skill, drawn) for skill in skills), strict=True), count):
         yield from turn
 
 
