@@ -80,7 +80,9 @@ def test_a_trial_is_done_where_the_simulated_body_did_all_of_it(
 ) -> None:
     bodies = iter([standing_still(80), by(backend)])
     monkeypatch.setattr(physics_evaluation, "perform", lambda *_: performed(next(bodies)))
-    monkeypatch.setattr(physics_evaluation, "physics_of", lambda _: told and {**told, "rewinds": 1, "weight_error": 0.03})
+    monkeypatch.setattr(
+        physics_evaluation, "physics_of", lambda _: told and {**told, "rewinds": 1, "weight_error": 0.03}
+    )
     found = run_trial(TRIAL)
     assert found is not None
     row = found.row
