@@ -19,7 +19,7 @@ from motion_backend.physics.mjcf_scene import Models, models_of, near_way
 from motion_backend.physics.mpc import Moment, stacked
 from motion_backend.physics.physics_options import Mode
 from motion_backend.physics.physics_record import forces_of, weight_error
-from motion_backend.physics.reference import Plan, Reference
+from motion_backend.physics.reference import Doing, Plan, Reference
 from motion_backend.physics.tracker import Tracked
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
@@ -30,6 +30,11 @@ WINDOW, BESIDE = 60, (15, 30)
 """Frames that are simulated among the same boxes, and those before and after whose surroundings count too."""
 LOW: Final = 0.35
 """A pelvis below this share of its standing height at the beginning gets up from the floor, and not from a bed."""
+DOING: Final = {
+    PhaseKind.WALK: Doing.WALKS, PhaseKind.TOUCH: Doing.REACHES, PhaseKind.EDGE: Doing.LIES,
+    PhaseKind.LIEDOWN: Doing.LIES, PhaseKind.GETUP: Doing.RISES,
+}  # fmt: skip
+"""What is followed otherwise; getting up from a bed is not."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +50,8 @@ class Task:
     @cached_property
     def reference(self) -> Reference:
         """From the frame before the part to the end of what is looked ahead at."""
-        before = np.zeros(len(self.past), dtype=bool)
-        contacts = np.array(self.past.contacts)
-        past = Plan(self.past.root_positions, self.past.local_rotations, contacts, before, before, before)
+        before = np.zeros(len(self.past), dtype=np.int8)
+        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before)
         boxes = scene_of(self.home).obstacles
         things = near_way(self._joints[self.plan.reaching], boxes) if self.plan.reaching.any() else None
         return Reference.of(past.followed_by(self.plan), self.skeleton, things).part(slice(len(past) - 1, None))
@@ -100,26 +104,17 @@ class Task:
         )
 
 
-def from_floor(motion: Motion) -> NDArray[np.bool_]:
-    """In which frames a motion gets up from the floor, until it kneels. (T,)."""
-    found = np.zeros(len(motion), dtype=bool)
+def doing(motion: Motion) -> NDArray[np.int8]:
+    """What a motion does in every frame, as far as it is followed otherwise for it: `Doing`. (T,)."""
+    found = np.full(len(motion), Doing.OTHER, dtype=np.int8)
     low = LOW * motion.skeleton.standing_height
     for phase in motion.phases:
-        if phase.kind is PhaseKind.GETUP and motion.root_positions[phase.start, 1] < low:
-            found[phase.start : phase.stop] = True
-    return found
-
-
-def within(motion: Motion, *kinds: PhaseKind) -> NDArray[np.bool_]:
-    """In which frames a motion is in a phase of some kinds. (T,)."""
-    found = np.zeros(len(motion), dtype=bool)
-    for phase in motion.phases:
-        found[phase.start : phase.stop] |= phase.kind in kinds
+        from_bed = phase.kind is PhaseKind.GETUP and motion.root_positions[phase.start, 1] >= low
+        found[phase.start : phase.stop] = Doing.OTHER if from_bed else DOING.get(phase.kind, Doing.OTHER)
     return found
 
 
 def plan_of(motion: Motion) -> Plan:
     """A motion's arrays, to be followed."""
     roots, local = motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64)
-    laid, reaching = within(motion, PhaseKind.EDGE, PhaseKind.LIEDOWN), within(motion, PhaseKind.TOUCH)
-    return Plan(roots, local, motion.contacts.astype(np.float64), from_floor(motion), laid, reaching)
+    return Plan(roots, local, motion.contacts.astype(np.float64), doing(motion))
