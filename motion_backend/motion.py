@@ -126,6 +126,8 @@ class Simulated:
     forces: tuple[Force, ...] = ()
     why: str = ""
     """Why no policy moved them, where one was asked for."""
+    weight_error: float | None = None
+    """How far what carried it at rest was from its weight, as a share of that; None where it never rested."""
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,8 @@ class Pressure:
     """Of walls and furniture. (15,)."""
     soles: Array = field(default_factory=lambda: np.zeros((len(SIDES), 6)))
     """By the nearest point of a foot: heel, heel, ball, ball, toe, toe. (2, 6)."""
-
+    up: Array = field(default_factory=lambda: np.zeros(1))
+    """The upward part of all of them and of friction, that is, what carries the body. (1,)."""
     root: Array = field(default_factory=lambda: np.zeros(1))
     """The greatest force or torque on the pelvis besides weight and contacts, newtons or newton metres. (1,)."""
 
@@ -81,6 +82,9 @@ class ContactReader:
             engine().mj_contactForce(model, data, index, force)
             pressing = pressure.floor if self.floor in geoms else pressure.things
             pressing[own] += share * force[0]
+            # MuJoCo's contact frame has its axes as rows, the first from the first geom to the second.
+            upward = float(force[:3] @ data.contact.frame[index].reshape(3, 3)[:, 1])
+            pressure.up[0] += share * (upward if self.own[geoms[1]] >= 0 else -upward)
             if TOUCHED[own].endswith("_foot"):
                 side = int(TOUCHED[own].startswith("right"))
                 if side not in feet:

@@ -20,9 +20,9 @@ from motion_backend.motion import FPS
 from motion_backend.physics.contact_forces import ContactReader, Pressure, root_force
 from motion_backend.physics.engine import engine
 from motion_backend.physics.linear_model import NX, Frame, State, linearise
-from motion_backend.physics.mjcf_character import NU, NV, SIMULATED
+from motion_backend.physics.mjcf_character import NU, NV, SIDES, SIMULATED
 from motion_backend.physics.mjcf_scene import Models
-from motion_backend.physics.reference import Reference
+from motion_backend.physics.reference import Doing, Reference
 from motion_backend.rotations import Array
 
 
@@ -70,10 +70,24 @@ def _prices() -> Array:
     return price
 
 
+def _swinging(side: str) -> Array:
+    price = PRICES_WALKING.copy()
+    for joint in SIMULATED:
+        if joint.name in (f"{side}_hip", f"{side}_knee", f"{side}_ankle"):
+            price[joint.qvel : joint.qvel + (1 if joint.axis else 3)] *= 10.0
+    return price
+
+
 PRICES: Final = _prices()
-PRICES_RAISED: Final = PRICES * np.repeat([10.0, 1.0, 5.0, 1.0], [6, NV - 6, 6, NV - 6])
-"""The same where the body gets up from the floor: joints that are as planned are worth nothing there if the pelvis
-stays down, since hands and knees that are not where they should be carry nothing."""
+PRICES_PELVIS: Final[Array] = PRICES * np.repeat([10.0, 1.0, 5.0, 1.0], [6, NV - 6, 6, NV - 6])
+"""The same where the pelvis comes first. Where the body gets up from the floor, joints that are as planned are worth
+nothing if the pelvis stays down, since hands and knees that are not where they should be carry nothing. Where it lies
+down, the whole body would come to lie to one side of its place."""
+PRICES_WALKING: Final[Array] = PRICES * np.where(np.arange(NX) == 1, 10.0, 1.0)
+"""The same where it walks: the height of the pelvis counts ten times as much, since it sank by a centimetre and feet
+hung as much lower."""
+PRICES_SWINGING: Final[tuple[Array, ...]] = tuple(_swinging(side) for side, _ in SIDES)
+"""And so do the joints of the leg that swings, left or right, while the other stands."""
 
 
 class Moment(NamedTuple):
@@ -209,7 +223,13 @@ class Controller:
         return pressure or Pressure()
 
     def _prices(self, at: int) -> Array:
-        return PRICES_RAISED if self.reference.raised[at] else PRICES
+        match self.reference.doing[at]:
+            case Doing.LIES | Doing.RISES:
+                return PRICES_PELVIS
+            case Doing.WALKS:
+                stands = self.reference.planted[at].reshape(2, 2).any(axis=1)
+                return PRICES_SWINGING[int(stands.argmin())] if stands.sum() == 1 else PRICES_WALKING
+        return PRICES
 
     def _planned(self, at: int) -> State:
         return State(self.reference.qpos[at], self.reference.qvel[at])

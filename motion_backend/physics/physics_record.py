@@ -16,6 +16,8 @@ PRESSES: Final = 5.0
 """Newtons from which a body counts as pressing on something."""
 LEAST: Final = 0.1
 """Seconds: what is touched for less is not told of."""
+SLOW: Final = 0.05
+"""Metres a second: a body whose pelvis is slower, half a second before and after too, is at rest."""
 
 
 def forces_of(pressures: Sequence[Pressure]) -> tuple[Force, ...]:
@@ -28,6 +30,15 @@ def forces_of(pressures: Sequence[Pressure]) -> tuple[Force, ...]:
         for index, name in enumerate(TOUCHED)
     ]
     return tuple(force for force in found if force.seconds >= LEAST)
+
+
+def weight_error(pressures: Sequence[Pressure], speeds: Array, weight: float) -> float | None:
+    """How far what carries a body (contacts' upward forces) is from its weight, as a share of that: the mean of the
+    frames at rest, each by itself. None where it never rests; pelvis speeds are (T,), metres a second."""
+    near = np.ones(FPS // 2 * 2 + 1)
+    rests = np.convolve(speeds < SLOW, near)[len(near) // 2 :][: len(speeds)] > len(near) - 0.5
+    carried = np.array([pressure.up[0] for pressure in pressures])[rests]
+    return round(float(np.abs(carried / weight - 1).mean()), 4) if len(carried) else None
 
 
 def _force(name: str, on: str, newtons: Array) -> Force:
@@ -63,12 +74,13 @@ def _modes(rows: Sequence[Simulated]) -> dict[str, Any]:
     return {"modes": told, "no_policy": sorted({row.why for row in rows if row.why})}
 
 
-def _sums(rows: Sequence[Simulated]) -> dict[str, float]:
+def _sums(rows: Sequence[Simulated]) -> dict[str, float | None]:
     return {
         "seconds": round(sum(row.seconds for row in rows), 2),
         "resets": sum(row.resets for row in rows),
         "rewinds": sum(row.rewinds for row in rows),
         "rewound_seconds": round(sum(row.rewound_seconds for row in rows), 2),
+        "weight_error": max((row.weight_error for row in rows if row.weight_error is not None), default=None),
     }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any, Final
 
 import numpy as np
@@ -37,6 +38,19 @@ FASTEST: Final = 8.0
 """Metres a second: a pelvis that is planned faster jumps."""
 
 
+class Doing(IntEnum):
+    """What a body does in a frame, as far as it is followed otherwise for it."""
+
+    OTHER = 0
+    WALKS = 1
+    REACHES = 2
+    """For something, with its hands."""
+    LIES = 3
+    """Goes down to lie, or lies."""
+    RISES = 4
+    """Gets up from the floor, on hands and knees."""
+
+
 @dataclass(frozen=True)
 class Plan:
     """T frames of a kinematic body."""
@@ -47,17 +61,20 @@ class Plan:
     """(T, 22, 4) xyzw."""
     contacts: Array
     """(T, 4)."""
-    raised: NDArray[np.bool_]
-    """(T,) whether the body gets up from the floor, on hands and knees."""
-    reaching: NDArray[np.bool_]
-    """(T,) whether it reaches for something with its hands."""
+    doing: NDArray[np.int8]
+    """(T,) of `Doing`."""
 
     def __len__(self) -> int:
         return len(self.roots)
 
     @property
+    def reaching(self) -> NDArray[np.bool_]:
+        """In which frames it reaches for something. (T,)."""
+        return np.asarray(self.doing == Doing.REACHES)
+
+    @property
     def _rows(self) -> tuple[Any, ...]:
-        return self.roots, self.local, self.contacts, self.raised, self.reaching
+        return self.roots, self.local, self.contacts, self.doing
 
     def part(self, frames: slice) -> Plan:
         """Some of the frames."""
@@ -93,8 +110,8 @@ class Reference:
     """(T, 4): left heel, left ball, right heel, right ball are to stay where they are."""
     wrists: Array
     """(T, 2, 4) local rotations, xyzw."""
-    raised: NDArray[np.bool_]
-    """(T,) as of the plan."""
+    doing: NDArray[np.int8]
+    """(T,) of `Doing`, as of the plan."""
 
     def __len__(self) -> int:
         return len(self.qpos)
@@ -102,7 +119,7 @@ class Reference:
     def part(self, frames: slice) -> Reference:
         """Some of the frames."""
         moving = (self.qpos[frames], self.qvel[frames], self.controls[frames])
-        return Reference(*moving, self.planted[frames], self.wrists[frames], self.raised[frames])
+        return Reference(*moving, self.planted[frames], self.wrists[frames], self.doing[frames])
 
     @staticmethod
     def of(plan: Plan, skeleton: Skeleton, things: Obstacles | None = None) -> Reference:
@@ -114,7 +131,7 @@ class Reference:
         qpos = fold(plan.roots, local)
         qvel = speeds(qpos)
         wrists = local[:, [INDEX[f"{side}_wrist"] for side, _ in SIDES]]
-        return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists, plan.raised)
+        return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists, plan.doing)
 
 
 def _feet_lifted(plan: Plan, skeleton: Skeleton) -> Array:

@@ -10,15 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.backend_protocol import History
+from motion_backend.body.zero_moment import GRAVITY
 from motion_backend.motion import FPS, Motion, Note, PhaseKind, Simulated
 from motion_backend.physics.generalized_coordinates import fold, speeds, unfold
 from motion_backend.physics.linear_model import State
-from motion_backend.physics.mjcf_character import NV
+from motion_backend.physics.mjcf_character import NV, mass_of
 from motion_backend.physics.mjcf_scene import Models, models_of, near_way
 from motion_backend.physics.mpc import Moment, stacked
 from motion_backend.physics.physics_options import Mode
-from motion_backend.physics.physics_record import forces_of
-from motion_backend.physics.reference import Plan, Reference
+from motion_backend.physics.physics_record import forces_of, weight_error
+from motion_backend.physics.reference import Doing, Plan, Reference
 from motion_backend.physics.tracker import Tracked
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
@@ -29,6 +30,11 @@ WINDOW, BESIDE = 60, (15, 30)
 """Frames that are simulated among the same boxes, and those before and after whose surroundings count too."""
 LOW: Final = 0.35
 """A pelvis below this share of its standing height at the beginning gets up from the floor, and not from a bed."""
+DOING: Final = {
+    PhaseKind.WALK: Doing.WALKS, PhaseKind.TOUCH: Doing.REACHES, PhaseKind.EDGE: Doing.LIES,
+    PhaseKind.LIEDOWN: Doing.LIES, PhaseKind.GETUP: Doing.RISES,
+}  # fmt: skip
+"""What is followed otherwise; getting up from a bed is not."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +50,8 @@ class Task:
     @cached_property
     def reference(self) -> Reference:
         """From the frame before the part to the end of what is looked ahead at."""
-        before = np.zeros(len(self.past), dtype=bool)
-        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before, before)
+        before = np.zeros(len(self.past), dtype=np.int8)
+        past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before)
         boxes = scene_of(self.home).obstacles
         things = near_way(self._joints[self.plan.reaching], boxes) if self.plan.reaching.any() else None
         return Reference.of(past.followed_by(self.plan), self.skeleton, things).part(slice(len(past) - 1, None))
@@ -76,15 +82,16 @@ class Task:
 
     def motion(self, done: Tracked, planned: Motion, mode: Mode = Mode.MPC, why: str = "") -> Motion:
         """The simulated frames of a part, with the contacts that were felt."""
-        qpos, _ = stacked(done.moments[1:])
+        qpos, qvel = stacked(done.moments[1:])
         roots, local = unfold(qpos, self.reference.wrists[1 : len(done.moments)])
-        keyframe = int(planned.actions[0])
+        keyframe, speed = int(planned.actions[0]), np.linalg.norm(qvel[:, :3], axis=1)
+        weight = mass_of(self.skeleton.scale * REFERENCE_HEIGHT) * GRAVITY
         record = Simulated(
             keyframe, mode.value, round(len(qpos) / FPS, 3),
             max((float(pressure.root[0]) for pressure in done.pressures[1:]), default=0.0),
             resets=len(done.resets), rewinds=len(done.rewinds),
             rewound_seconds=round(done.rewound / FPS, 2), forces=forces_of(done.pressures[1:]),
-            why=why,
+            why=why, weight_error=weight_error(done.pressures[1:], speed, weight),
         )  # fmt: skip
         told = (f"fell, and was set back onto the plan {at / FPS:.1f} s into it" for at in done.resets)
         return replace(
@@ -97,25 +104,17 @@ class Task:
         )
 
 
-def from_floor(motion: Motion) -> NDArray[np.bool_]:
-    """In which frames a motion gets up from the floor, until it kneels. (T,)."""
-    found = np.zeros(len(motion), dtype=bool)
+def doing(motion: Motion) -> NDArray[np.int8]:
+    """What a motion does in every frame, as far as it is followed otherwise for it: `Doing`. (T,)."""
+    found = np.full(len(motion), Doing.OTHER, dtype=np.int8)
     low = LOW * motion.skeleton.standing_height
     for phase in motion.phases:
-        if phase.kind is PhaseKind.GETUP and motion.root_positions[phase.start, 1] < low:
-            found[phase.start : phase.stop] = True
-    return found
-
-
-def reaching(motion: Motion) -> NDArray[np.bool_]:
-    """In which frames a motion reaches for something. (T,)."""
-    found = np.zeros(len(motion), dtype=bool)
-    for phase in motion.phases:
-        found[phase.start : phase.stop] |= phase.kind is PhaseKind.TOUCH
+        from_bed = phase.kind is PhaseKind.GETUP and motion.root_positions[phase.start, 1] >= low
+        found[phase.start : phase.stop] = Doing.OTHER if from_bed else DOING.get(phase.kind, Doing.OTHER)
     return found
 
 
 def plan_of(motion: Motion) -> Plan:
     """A motion's arrays, to be followed."""
     roots, local = motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64)
-    return Plan(roots, local, motion.contacts.astype(np.float64), from_floor(motion), reaching(motion))
+    return Plan(roots, local, motion.contacts.astype(np.float64), doing(motion))

@@ -15,7 +15,7 @@ from motion_backend.physics.engine import engine
 from motion_backend.physics.mjcf_character import NU
 from motion_backend.physics.mjcf_scene import Models
 from motion_backend.physics.mpc import Controller, Effort, Moment, moment_of
-from motion_backend.physics.reference import Reference
+from motion_backend.physics.reference import Doing, Reference
 from motion_backend.rotations import Array
 
 EFFORTS: Final = (Effort(), Effort(24, 2), Effort(28, 2, 2), Effort(30, 2, 2))
@@ -72,7 +72,7 @@ class Tracker:
         falls, beyond, until, left = 0, 0, frames, ahead
         while (at := len(done.moments) - 1) < until:
             self.between()
-            least = FROM_FLOOR if self.reference.raised[at] else 0
+            least = FROM_FLOOR if self.reference.doing[at] == Doing.RISES else 0
             stop = frames if at < frames else until
             self._window(done, EFFORTS[max(falls, least)], data, reader, stop - at)
             at = len(done.moments) - 1

@@ -10,6 +10,7 @@ import json
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from typing import Any, Final
 
@@ -37,8 +38,9 @@ DRAWN: Final = 1601
 """The seed of rooms and captions."""
 LIMITS: Final = {
     "slip": 4.0, "skate_ratio": 0.05, "floor_pen": 0.004, "jerk_ratio": 1.2, "cpu": 1.5, "contact_error": 0.05,
+    "weight_error": 0.05,
 }  # fmt: skip
-"""The most of each figure: cm/s, a share, metres, times the plan's, CPU-seconds a second, metres."""
+"""The most of each figure: cm/s, a share, metres, times the plan's, CPU-seconds a second, metres, of the weight."""
 Row = dict[str, Any]
 
 
@@ -54,22 +56,25 @@ class PhysicsTrial:
 
 def draw_trials(skill: Skill, count: int, drawn: int = DRAWN) -> list[Trial]:
     """So many trials of a skill, each with its own caption, room and seed by chance, from a seed of all."""
+    return list(islice(_drawn(skill, drawn), count))
+
+
+def _drawn(skill: Skill, drawn: int) -> Iterator[Trial]:
+    """Trials of a skill without end: furnishing a room to see what it has places for takes a while."""
     rng = np.random.default_rng([drawn, list(Skill).index(skill)])
     rooms = [layout.id for layout in built_in_index().layouts]
     known = captions()[skill.value]
-    found: list[Trial] = []
-    while len(found) < count:
+    while True:
         trial = Trial(
             skill, str(rng.choice(known)), rooms[int(rng.integers(len(rooms)))], int(rng.integers(DRAWN, 1 << 31))
         )
         if places_for(skill, trial.caption, setting(trial.room)):
-            found.append(trial)
-    return found
+            yield trial
 
 
 def by_turns(skills: Sequence[Skill], count: int, drawn: int = DRAWN) -> Iterator[Trial]:
     """So many trials of each of some skills, one of each in turn: a run that is ended has as many of all."""
-    for turn in zip(*(draw_trials(skill, count, drawn) for skill in skills), strict=True):
+    for turn in islice(zip(*(_drawn(skill, drawn) for skill in skills), strict=True), count):
         yield from turn
 
 
@@ -95,6 +100,8 @@ def _row(plan: Performance, physics: Performance, cpu: float) -> Row:
         "planned": plan.figures.reached, "reason": physics.figures.reason, "made_by": made_by,
         "contact_error": physics.figures.to_dict()["contact_error"],
         "resets": told["resets"] if told else 0, "rewinds": told["rewinds"] if told else 0,
+        "weight_error": told["weight_error"] if told else None,
+        "execution": physics.figures.to_dict()["execution_time"],
         "cpu": cpu / physics.motion.duration, **_feet(physics.motion, plan.motion),
     }  # fmt: skip
 
@@ -163,6 +170,8 @@ def figures_of(rows: Sequence[Row]) -> dict[str, tuple[float, float, float]]:
     for name in (
         "reached",
         "contact_error",
+        "execution",
+        "weight_error",
         "slip",
         "slip_planned",
         "skate",

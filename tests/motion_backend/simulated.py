@@ -51,8 +51,8 @@ def tracked(plan: Plan, frames: int, height: float = 1.70) -> Tracked:
 def stood(height: float = 1.70, seconds: float = 3) -> tuple[Plan, Tracked]:
     """A body that is to stand still."""
     state = after(HOME, height=height)
-    no = np.zeros(1, dtype=bool)
-    plan = Plan(state.history.root_positions[-1:], state.history.local_rotations[-1:], np.ones((1, 4)), no, no)
+    no = np.zeros(1, dtype=np.int8)
+    plan = Plan(state.history.root_positions[-1:], state.history.local_rotations[-1:], np.ones((1, 4)), no)
     frames = round(30 * seconds)
     plan = plan.last(frames + 31)
     return plan, tracked(plan, frames, height)

@@ -38,7 +38,7 @@ def mirrored_view(view: View) -> View:
     plan = view.task.reference
     other = Reference(
         in_mirror(plan.qpos, plan.wrists), SPEEDS(plan.qvel), CONTROLS(plan.controls), plan.planted[:, [2, 3, 0, 1]],
-        plan.wrists[:, ::-1] * TURNED, plan.raised,
+        plan.wrists[:, ::-1] * TURNED, plan.doing,
     )  # fmt: skip
     task = replace(view.task)
     task.__dict__["reference"] = other

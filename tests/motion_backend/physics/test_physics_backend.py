@@ -20,8 +20,9 @@ from motion_backend.metrics.contact_error import outcome
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Motion, Skill, join
 from motion_backend.physics.backend import PhysicsBackend
+from motion_backend.physics.contact_forces import Pressure
 from motion_backend.physics.physics_options import Mode, PhysicsOptions, give_physics
-from motion_backend.physics.physics_record import physics_of
+from motion_backend.physics.physics_record import physics_of, weight_error
 from motion_backend.procedural.backend import ProceduralBackend
 from scene_graphs.home import Home
 
@@ -169,3 +170,17 @@ def test_every_skill_of_the_small_home_is_done() -> None:
             motion, state = director.act(HOME, action, state)
             assert outcome(action, Kinematics.of(motion)).reached
             assert not any(one.resets for one in motion.simulated)
+
+
+def test_what_carries_a_body_is_held_against_its_weight_where_it_rests() -> None:
+    speeds, frames = np.full(120, 0.2), range(120)
+    pressures = [Pressure(up=np.array([660.0 if at % 2 else 740.0])) for at in frames]
+    assert weight_error(pressures, speeds, 700.0) is None
+    speeds[40:100] = 0.01
+    assert weight_error(pressures, speeds, 700.0) == pytest.approx(40 / 700, abs=1e-4)
+    # Half a second within what is slow; what is felt outside of it counts for nothing.
+    for at in (*range(55), *range(85, 120)):
+        pressures[at].up[0] = 0.0
+    assert weight_error(pressures, speeds, 700.0) == pytest.approx(40 / 700, abs=1e-4)
+    pressures[55].up[0] = 0.0
+    assert weight_error(pressures, speeds, 700.0) == pytest.approx((1 + 29 * 40 / 700) / 30, abs=1e-4)

@@ -167,3 +167,4 @@ def test_what_rests_presses_with_its_weight_on_what_is_under_it(
     weight = mass_of(1.70) * GRAVITY
     assert (things + floor).sum() == pytest.approx(weight, rel=0.05)
     assert things.sum() > 0.7 * weight
+    assert np.mean([one.up[0] for one in pressures[-15:]]) == pytest.approx(weight, rel=0.05)

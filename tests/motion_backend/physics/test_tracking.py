@@ -9,12 +9,13 @@ import pytest
 from simulated import empty_room, stood, tracked, tracker_of, walk, walked
 
 from motion_backend.body.zero_moment import GRAVITY
+from motion_backend.motion import Phase, PhaseKind
 from motion_backend.physics.contact_forces import Pressure
 from motion_backend.physics.engine import engine
-from motion_backend.physics.mjcf_character import NU, mass_of
+from motion_backend.physics.mjcf_character import NU, SIMULATED, mass_of
 from motion_backend.physics.mpc import SLIDING, Controller, Effort, Moment, moment_of
 from motion_backend.physics.physics_options import PhysicsOptions, give_physics
-from motion_backend.physics.reference import Plan
+from motion_backend.physics.reference import Doing, Plan
 from motion_backend.physics.task import plan_of
 from motion_backend.physics.tracker import EFFORTS, FROM_FLOOR, Tracked, Tracker
 
@@ -32,6 +33,7 @@ def test_a_body_stands_and_the_floor_carries_its_weight(seconds: float) -> None:
     assert away(plan, done).max() < 0.05
     carried = np.mean([pressure.total for pressure in done.pressures[-15:]])
     assert carried == pytest.approx(mass_of(1.70) * GRAVITY, rel=0.05)
+    assert carried == pytest.approx(np.mean([pressure.up[0] for pressure in done.pressures[-15:]]), rel=0.01)
     assert done.pressures[-1].planted.tolist() == [1, 1, 1, 1]
 
 
@@ -172,8 +174,8 @@ def test_getting_up_from_the_floor_is_looked_farther_ahead_and_the_pelvis_comes_
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     plan = plan_of(walk())
-    raised = np.arange(len(plan)) >= 4
-    tracker, efforts = tracker_of(replace(plan, raised=raised)), []
+    doing = np.where(np.arange(len(plan)) >= 4, Doing.RISES, Doing.OTHER)
+    tracker, efforts = tracker_of(replace(plan, doing=doing)), []
 
     def goes(_self: Tracker, done: Tracked, effort: object, *_rest: object) -> None:
         efforts.append(effort)
@@ -184,6 +186,50 @@ def test_getting_up_from_the_floor_is_looked_farther_ahead_and_the_pelvis_comes_
     tracker.track(moment_of(tracker.reference, 0), np.zeros((0, NU)), 8)
     assert efforts == [EFFORTS[0]] * 4 + [EFFORTS[FROM_FLOOR]] * 4
     data, reader = tracker._scratch()
-    prices = [Controller(empty_room(), data, tracker.reference, reader)._prices(at) for at in (0, 4)]
-    assert (prices[1][:6] > prices[0][:6]).all()
-    np.testing.assert_array_equal(prices[1][6:36], prices[0][6:36])
+    found = [Controller(empty_room(), data, tracker.reference, reader)._prices(at) for at in (0, 4)]
+    assert (found[1][:6] > found[0][:6]).all()
+    np.testing.assert_array_equal(found[1][6:36], found[0][6:36])
+
+
+def prices(plan: Plan, at: int) -> np.ndarray:
+    tracker = tracker_of(plan)
+    data, reader = tracker._scratch()
+    return Controller(empty_room(), data, tracker.reference, reader)._prices(at)
+
+
+def all_along(plan: Plan, doing: Doing) -> Plan:
+    return replace(plan, doing=np.full(len(plan), doing, dtype=np.int8))
+
+
+def test_the_pelvis_comes_first_on_the_way_down_to_lie_as_on_the_way_up() -> None:
+    plan = plan_of(walk())
+    lies, rises, does = (prices(all_along(plan, one), 4) for one in (Doing.LIES, Doing.RISES, Doing.OTHER))
+    np.testing.assert_array_equal(lies, rises)
+    assert (lies[:6] > does[:6]).all()
+
+
+def test_the_leg_that_swings_is_to_be_where_it_is_planned_and_the_one_that_stands_to_hold_the_pelvis_up() -> None:
+    plan = plan_of(walk())
+    stands = plan.contacts.reshape(-1, 2, 2).max(axis=2) > 0.5
+    legs = [next(joint.qvel for joint in SIMULATED if joint.name == f"{side}_knee") for side in ("left", "right")]
+    for swings, knee in enumerate(legs):
+        at = int(np.flatnonzero(~stands[:, swings] & stands[:, 1 - swings])[0])
+        walks, does = prices(all_along(plan, Doing.WALKS), at), prices(all_along(plan, Doing.OTHER), at)
+        assert walks[knee] > does[knee]
+        assert walks[legs[1 - swings]] == does[legs[1 - swings]]
+        assert walks[1] > does[1]
+        np.testing.assert_array_equal(walks[[0, 2, 3, 4, 5]], does[[0, 2, 3, 4, 5]])
+    both = int(np.flatnonzero(stands.all(axis=1))[0])
+    assert (prices(all_along(plan, Doing.WALKS), both) != prices(all_along(plan, Doing.OTHER), both)).sum() == 1
+
+
+def test_a_plan_knows_what_it_does_in_every_frame() -> None:
+    motion = walk().part(0, 60)
+    kinds = (PhaseKind.WALK, PhaseKind.EDGE, PhaseKind.LIEDOWN, PhaseKind.SITDOWN, PhaseKind.TOUCH, PhaseKind.GETUP)
+    phases = tuple(Phase(kind, 10 * index, 10 * index + 10) for index, kind in enumerate(kinds))
+    motion = replace(motion, phases=phases)
+    from_bed = [Doing.WALKS, Doing.LIES, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.OTHER]
+    assert plan_of(motion).doing[::10].tolist() == from_bed
+    low = replace(motion, root_positions=motion.root_positions * np.array([1, 0.2, 1], dtype=np.float32))
+    assert plan_of(low).doing.tolist() == np.repeat([*from_bed[:-1], Doing.RISES], 10).tolist()
+    assert plan_of(low).part(slice(5, 15)).doing.tolist() == [Doing.WALKS] * 5 + [Doing.LIES] * 5

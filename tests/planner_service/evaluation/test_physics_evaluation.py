@@ -34,7 +34,7 @@ class Figures:
     reached, reason = True, ""
 
     def to_dict(self) -> dict[str, Any]:
-        return {"contact_error": 0.02}
+        return {"contact_error": 0.02, "execution_time": 1.5}
 
 
 def performed(motion: Motion) -> Performance:
@@ -80,13 +80,16 @@ def test_a_trial_is_done_where_the_simulated_body_did_all_of_it(
 ) -> None:
     bodies = iter([standing_still(80), by(backend)])
     monkeypatch.setattr(physics_evaluation, "perform", lambda *_: performed(next(bodies)))
-    monkeypatch.setattr(physics_evaluation, "physics_of", lambda _: told and {**told, "rewinds": 1})
+    monkeypatch.setattr(
+        physics_evaluation, "physics_of", lambda _: told and {**told, "rewinds": 1, "weight_error": 0.03}
+    )
     found = run_trial(TRIAL)
     assert found is not None
     row = found.row
     assert row["reached"] is reached
     assert (row["skill"], row["caption"], row["room"], row["seed"]) == ("loco", "stand still", "bedroom-0000", 7)
     assert (row["seconds"], row["contact_error"], row["planned"]) == (2.0, 0.02, True)
+    assert (row["execution"], row["weight_error"]) == (1.5, 0.03 if told else None)
     assert (row["resets"], row["rewinds"]) == ((told["resets"], 1) if told else (0, 0))
     assert (row["away"], row["slip"], row["skate_ratio"], row["floor_pen"]) == (
         0.0,
