@@ -7,9 +7,12 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import pytest
 import typer
 from for_each import for_each
+from typer.testing import CliRunner
 
+from benchmarks.themes import demo
 from planner_service.cli import app
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -116,6 +119,34 @@ def test_the_readme_shows_the_theme_of_the_demo() -> None:
     told = re.search(r"^THEME \?= (.+)$", text_of(ROOT / "Makefile"), re.MULTILINE)
     assert told is not None
     assert told[1] in re.sub(r"\n(?:> )?", " ", text_of(ROOT / "README.md"))
+
+
+@pytest.mark.sweep
+def test_the_readme_shows_what_the_demo_prints(tmp_path: Path) -> None:
+    """All but how far it is, its table and the files that a film adds."""
+    theme, seed = demo()
+    done = CliRunner().invoke(app, ["story", theme, "--seed", str(seed), "--out", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    readme = spaced(text_of(ROOT / "README.md"))
+    printed = re.split(r"\n\s*\n", done.stdout)
+    shown = [spaced(part) for part in printed if part.strip() and not re.search("━|reached|written to", part)]
+    assert [part for part in shown if part not in readme] == []
+    assert len(shown) >= 4
+
+
+@pytest.mark.sweep
+def test_the_readme_shows_what_its_python_prints(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    snippet, said = re.findall(r"```python\n(.*?)```\n\n```\n(.*?)```", text_of(ROOT / "README.md"), re.DOTALL)[0]
+    exec(snippet, {})
+    assert capsys.readouterr().out == said
+
+
+def spaced(text: str) -> str:
+    """Text without regard to how it is broken into lines."""
+    return " ".join(text.split())
 
 
 def test_the_pictures_are_small() -> None:

@@ -40,7 +40,7 @@ class Filmer:
             return
         started = time.perf_counter()
         self.store.begin(film_id, STAGE)
-        filmed = self._filmed(filmed_by(self.store.engine, film_id))
+        filmed = self.filmed(filmed_by(self.store.engine, film_id))
         with TemporaryDirectory(prefix="sims-film-") as folder:
             path = write_film(filmed, Path(folder) / "film.mp4", show=self._telling(film_id))
             data = path.read_bytes()
@@ -48,7 +48,8 @@ class Filmer:
         made = Made(KIND, 0, data, summary, None, 1.0, time.perf_counter() - started)
         self.store.record(film_id, made, self.worker)
 
-    def _filmed(self, story_id: str) -> Filmed:
+    def filmed(self, story_id: str) -> Filmed:
+        """What there is of a story to film. StoryGone."""
         story = OpenStory(self.store, story_id, self.pipeline)
         motions = read_segments(self.store, story_id, range(len(story.actions)))
         segments = tuple(pairwise(accumulate(map(len, motions), initial=0)))

@@ -29,13 +29,14 @@ MOVED: Final = re.compile(
 """Words of a beat in which a thing moves: a hand is seen on it, and it stays as it is."""
 RESTS: Final = re.compile(
     r"(?:\w+ly )?(?:sits?|sat|lies|lie|lay|settles?|sinks?|flops?|drops?|slumps?|curls?|perch(?:es)?|collapses?|rests?"
-    r"|stays?|takes? (?:a|his|her|their|the) (?:seat|place))\b"
+    r"|stays?|sleeps?|slept|naps?|dozes?|nods? off|f(?:a|e)lls? asleep|goes to (?:sleep|bed)"
+    r"|takes? (?:a|his|her|their|the) (?:seat|place))\b"
     r"(?!.*\b(?:and|with|to|hands?|arms?|elbows?|chin|head|\w{2,}ing)\b)",
     re.IGNORECASE,
 )
-"""A beat that says no more than that somebody sits or lies somewhere: what hands do is not its matter."""
-OF_HANDS: Final = re.compile(r"\b(?:hands?|arms?)\b")
-"""Words of a note (`Motion.notes`) on nothing but hands."""
+"""A beat that says no more than that somebody sits, lies or sleeps somewhere: how arms and legs lie is not its matter."""
+OF_LIMBS: Final = re.compile(r"\b(?:hands?|arms?|knees?|foot|feet)\b")
+"""Words of a note (`Motion.notes`) on nothing but arms and legs."""
 
 
 def connects(keyframe: Keyframe) -> bool:
@@ -198,8 +199,8 @@ def _seen(beat: Beat, index: int, shots: Sequence[Shot]) -> Beat:
 
 
 def _concerns(words: str, beat: Beat) -> bool:
-    """Whether a note is about what a beat says: who is only said to sit at a table does so wherever the hands are."""
-    return not (OF_HANDS.search(words) and RESTS.match(beat.text))
+    """Whether a note is about what a beat says: who is only said to lie on a bed does so wherever the knees are."""
+    return not (OF_LIMBS.search(words) and RESTS.match(beat.text))
 
 
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import atan2, isfinite, pi
+from math import atan2, isfinite, pi, prod
 from typing import Final, NamedTuple
 
 import numpy as np
 
 from scene_graphs.boxes import Part, Point3
-from scene_graphs.furniture import affordances
+from scene_graphs.furniture import affordances, class_of
 from scene_graphs.geometry.mesh_decomposition import front_of_mesh, shape_of
 from scene_graphs.json_fields import MAX_COORDINATE, LayoutError
 from scene_graphs.layout import MAX_SIZE, Array, Layout, Placed, wrap
@@ -76,6 +76,10 @@ MAX_PIECES: Final = 500
 MAX_MEASURED: Final = 100
 """Pieces whose shape is taken from their mesh, at up to 0.05 s each; of more it is that of their category."""
 _TURNED: Final = 0.01
+_SAT_AT: Final = frozenset({"dining_table", "desk", "dressing_table"})
+"""Tables that have room for knees, also those that are one solid block in a file."""
+_SOLID: Final = 0.9
+"""The share of its box from which a piece is a block."""
 
 
 def read_glb(source: Source, intake: Intake) -> list[Layout]:
@@ -176,6 +180,8 @@ class _Scene:
         for place in used[:MAX_MEASURED]:
             placed = room.objects[place]
             room.objects[place] = replace(placed, shape=_shape(placed, *sources[placed.id]))
+            if not room.objects[place].shape and (placed.category in _SAT_AT or class_of(placed.category) == "seat"):
+                self.intake.guess("legs of a table or seat that is one solid block in the file")
         for _ in used[MAX_MEASURED:]:
             self.intake.guess("shape")
 
@@ -251,5 +257,7 @@ def _shape(placed: Placed, piece: Piece, points: Array) -> tuple[Part, ...]:
     try:
         shape = shape_of(placed.to_local(points), piece.mesh.corners, placed.category)
     except LayoutError:
+        return ()
+    if placed.category in _SAT_AT and sum(prod(part.size) for part in shape) >= _SOLID * prod(placed.size):
         return ()
     return shape if len(shape) > 1 else ()

@@ -308,6 +308,11 @@ export interface FilmJob {
   readonly error: Failure | null;
 }
 
+/** The film as USD, made for this call. */
+export async function getUsd(id: string): Promise<Blob> {
+  return (await call(`${story(id)}/film.usd`)).blob();
+}
+
 export const mp4Url = (id: string): string => `${story(id)}/film.mp4`;
 
 /** Have a story filmed; one that is there or under way stays. */

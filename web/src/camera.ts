@@ -18,6 +18,8 @@ const GAZE = 0.2;
 /** Seconds between looks for a better place, and how much better it must be. */
 const LOOK_EVERY = 0.7;
 const WORTH = 0.3;
+/** What it counts to be on the side away from what is done. */
+const FAR_SIDE = 0.5;
 /** Radians added to the best angle where that is obstructed. */
 const DETOURS = [0, 0.45, -0.45, 0.9, 1.4, 2];
 
@@ -28,6 +30,8 @@ export class CameraMan {
   calm = false;
   /** How far from straight ahead the body is seen, radians. */
   aside = 0.75;
+  /** The side on which something is done: 1 its left, -1 its right, 0 neither. */
+  side = 0;
   /** Knows what is in the way; without it nothing is. */
   lookout: Lookout | null = null;
   #mode: CameraMode = "orbit";
@@ -155,7 +159,8 @@ export class CameraMan {
     const eye = this.#step.setFromSphericalCoords(NEAR * this.#narrow, STEEP, around);
     eye.add(body).setY(eye.y - 0.4 * body.y + GAZE);
     const hidden = this.lookout?.cost(eye.toArray(), body.toArray()) ?? 0;
-    return hidden + 0.35 * Math.abs(Math.abs(offset) - this.aside) + effort * Math.abs(angle(around - from));
+    const behind = offset * this.side < 0 ? FAR_SIDE : 0;
+    return hidden + behind + 0.35 * Math.abs(Math.abs(offset) - this.aside) + effort * Math.abs(angle(around - from));
   }
 
   #overview(): void {

@@ -3,6 +3,7 @@
 import { filmUrl, motionUrl, sceneUrl, storyUrl, type Story } from "./api";
 import { fill, h, icon } from "./dom";
 import { filmItem } from "./filming";
+import { usdItem } from "./usd";
 
 interface File {
   readonly name: string;
@@ -30,7 +31,7 @@ export function showDownloads(section: HTMLElement, story: Story): boolean {
   fill(
     section,
     h("h2", {}, "Take it with you"),
-    h("ul", { class: "files" }, state === "succeeded" ? filmItem(id, `${stem}.mp4`) : null, ...there.map((file) => h("li", {}, h("a", { href: file.url, download: file.name }, icon("down"), file.name), h("span", { class: "hint" }, file.words)))),
+    h("ul", { class: "files" }, ...(state === "succeeded" ? [filmItem(id, `${stem}.mp4`), usdItem(id, `${stem}.usd`)] : []), ...there.map((file) => h("li", {}, h("a", { href: file.url, download: file.name }, icon("down"), file.name), h("span", { class: "hint" }, file.words)))),
   );
   return true;
 }

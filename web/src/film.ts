@@ -13,6 +13,7 @@ import { Reel } from "./reel";
 import type { Stage } from "./stage";
 import { Timeline } from "./timeline";
 import { keyframeAt } from "./timing";
+import { sideOf } from "./words";
 
 const FPS = 30;
 /** From where each skill is seen best, radians from straight ahead: what is touched stands in front of the body. */
@@ -301,7 +302,10 @@ export class Film {
       this.#subtitle.dataset["emotion"] = keyframe.mood;
       fill(this.#subtitle, h("small", {}, keyframe.emotion), h("span", {}, keyframe.caption));
     }
-    if (keyframe && this.#stage) this.#stage.cameraMan.aside = ASIDE[keyframe.skill];
+    if (keyframe && this.#stage) {
+      this.#stage.cameraMan.aside = ASIDE[keyframe.skill];
+      this.#stage.cameraMan.side = sideOf(keyframe.caption);
+    }
     this.#map.show(keyframe?.object_id ?? null);
     this.#mood();
     this.#shown(index);

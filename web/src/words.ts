@@ -76,3 +76,9 @@ export function beatsWords(beats: readonly Beat[]): string {
   const more = stoodFor ? `, something stands for ${stoodFor} more` : "";
   return `${asked.filter((beat) => beat.acted).length} of ${count(asked.length, "beat")} of your theme ${asked.length === 1 ? "is" : "are"} acted${more}.`;
 }
+
+/** The side on which a caption has a hand or an arm do something: 1 left, -1 right, 0 where it names none or both. */
+export function sideOf(caption: string): -1 | 0 | 1 {
+  const has = (side: string): boolean => new RegExp(`\\b${side} (hand|arm|ear)\\b`, "i").test(caption);
+  return has("left") === has("right") ? 0 : has("left") ? 1 : -1;
+}

@@ -99,6 +99,18 @@ def test_a_note_on_hands_leaves_the_beat_acted_that_only_says_where_one_rests(te
 
 
 @pytest.mark.parametrize(
+    ("text", "stood_for"),
+    [
+        ("lies down on the bed, tired", False), ("sleeps", False), ("falls asleep on the sofa", False),
+        ("lies with her knees drawn up", True), ("does sit-ups", True),
+    ],
+)  # fmt: skip
+def test_who_is_only_said_to_lie_or_sleep_does_so_however_the_knees_lie(text: str, stood_for: bool) -> None:
+    less = shot(0, True, otherwise=("no room before the body: knees drawn up less",))
+    assert acted_beats([Beat(text=text)], [less]).stood_for == stood_for
+
+
+@pytest.mark.parametrize(
     ("text", "unshown"),
     [
         ("slams the cabinet", ["that the cabinet moves"]), ("opens the curtains", ["that the curtains move"]),

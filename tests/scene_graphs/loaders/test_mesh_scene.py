@@ -158,6 +158,21 @@ def test_a_plain_block_is_used_as_what_it_is_called() -> None:
     assert spots(sofa, "sit")
 
 
+def test_a_table_that_is_one_block_gets_legs_and_the_report_says_so() -> None:
+    scene = trimesh.Scene()
+    add(scene, "Table", block((0, 0, 0), (1.6, 0.75, 0.9)))
+    add(scene, "Wardrobe", block((3, 0, 0), (4, 2.0, 0.6)))
+    boxed = read(scene)
+    assert not boxed.layouts[0].objects[0].shape
+    (told,) = [line for line in boxed.report.lines() if "one solid block" in line]
+    assert told.startswith("estimated 1: legs of a table")
+    for x in (0.0, 1.5):
+        add(scene, f"Leg{x}", block((x, -0.7, 0), (x + 0.1, 0, 0.9)), under="Table")
+    built = read(scene)
+    assert built.layouts[0].objects[0].shape
+    assert not [line for line in built.report.lines() if "one solid block" in line]
+
+
 def test_a_label_says_more_than_a_name() -> None:
     document, binary = small_document()
     document["nodes"][1] |= {"name": "Mesh_0815", "extras": {"category": "Wardrobe"}}
