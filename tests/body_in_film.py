@@ -23,8 +23,9 @@ PAINTED: Final = 40
 """Steps of brightness between a black and a white body from which a pixel is the body's; its shadow stays the same."""
 STANDS_OUT: Final = 16
 """Steps of brightness between a picture with the body and one without, from which a pixel tells which of them it is."""
-PRESENT: Final = 0.003
-"""The share of a picture that is to be of the body: a figure 35 pixels wide and 80 high of 1280 × 720."""
+PRESENT: Final = 0.006
+"""The share of a picture that is to be of the body: a figure 55 pixels wide and 100 high of 1280 × 720. The band behind
+a title, without any body, may look like two thirds of that."""
 
 
 def decoded(path: Path) -> Iterator[Planes]:

@@ -43,4 +43,4 @@ def test_a_film_that_the_body_is_left_out_of_is_seen_to_be_empty(
     with monkeypatch.context() as without:
         without.setattr(Backdrop, "with_body", lambda self, _: self.planes.copy())
         film = list(decoded(write_film(filmed, tmp_path / "film.mp4", SIZE)))
-    assert max(body_shares(film, filmed, every=10).values()) < PRESENT / 2
+    assert max(body_shares(film, filmed, every=10).values()) < PRESENT
