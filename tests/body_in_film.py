@@ -23,8 +23,9 @@ PAINTED: Final = 40
 """Steps of brightness between a black and a white body from which a pixel is the body's; its shadow stays the same."""
 STANDS_OUT: Final = 16
 """Steps of brightness between a picture with the body and one without, from which a pixel tells which of them it is."""
-PRESENT: Final = 0.003
-"""The share of a picture that is to be of the body: a figure 35 pixels wide and 80 high of 1280 × 720."""
+PRESENT: Final = 0.006
+"""The share of a picture that is to be of the body: a figure 55 pixels wide and 100 high of 1280 × 720. The band behind
+a title, without any body, may look like two thirds of that."""
 
 
 def decoded(path: Path) -> Iterator[Planes]:
@@ -37,8 +38,8 @@ def decoded(path: Path) -> Iterator[Planes]:
 def body_shares(film: Sequence[Planes], filmed: Filmed, every: int) -> dict[int, float]:
     """For every so many frames of a decoded film the share of its pixels that show the body.
 
-    They are where a black body and a white one would differ, and the film is nearer to a picture with the body than
-    to one of what is behind it. Words, shadows, and what looks like what is behind it do not count.
+    They are where a black body and a white one would differ, and the film is as a picture with the body is and as one
+    of what is behind it is not. Words, shadows, and what looks like what is behind it do not count.
     """
     height, width = split(film[0])[0].shape
     acting = Acting.of(filmed.motion, filmed.role)
@@ -56,7 +57,7 @@ def _share(picture: Planes, backdrop: Backdrop, body: Solid) -> float:
     black, white = (_bright(backdrop.with_body(replace(body, color=color))) for color in (BLACK, WHITE))
     there, empty, shown = (_bright(one) for one in (backdrop.with_body(body), backdrop.planes, picture))
     its = (white - black > PAINTED) & (np.abs(there - empty) > STANDS_OUT)
-    return float(np.mean(its & (np.abs(shown - there) < np.abs(shown - empty))))
+    return float(np.mean(its & (np.abs(shown - there) < STANDS_OUT / 2)))
 
 
 def _bright(planes: Planes) -> NDArray[np.int16]:

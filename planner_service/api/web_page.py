@@ -65,8 +65,8 @@ color-scheme: light dark }</style>
 <h1>The page is not built</h1>
 <p>The service runs; only this page is missing. With Node 20 or newer on the path, build it with</p>
 <pre><code>make page</code></pre>
-<p>in the clone, and load this page again; where the package was installed from a clone, install it anew then. Everything
-else works without it:
+<p>in the clone, and load this page again; where the package was installed from a clone, install it anew then.
+Everything else works without it:
 <a href="/openapi.json">the calls there are</a>, <a href="/readyz">whether the service is ready</a>.</p>
 </html>
 """

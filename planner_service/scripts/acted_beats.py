@@ -34,7 +34,7 @@ RESTS: Final = re.compile(
     r"(?!.*\b(?:and|with|to|hands?|arms?|elbows?|chin|head|\w{2,}ing)\b)",
     re.IGNORECASE,
 )
-"""A beat that says no more than that somebody sits, lies or sleeps somewhere: how arms and legs lie is not its matter."""
+"""A beat that says no more than that somebody sits, lies or sleeps somewhere: arms and legs are not its matter."""
 OF_LIMBS: Final = re.compile(r"\b(?:hands?|arms?|knees?|foot|feet)\b")
 """Words of a note (`Motion.notes`) on nothing but arms and legs."""
 

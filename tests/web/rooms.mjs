@@ -52,6 +52,7 @@ async function search(page) {
   await field.press("Enter");
   await page.locator(".match").first().waitFor();
   const match = page.locator(".match").first();
+  for (const place of [0, 1]) await match.locator(".room-plan").nth(place).locator(".number").first().waitFor();
   const numbers = (place) => match.locator(".room-plan").nth(place).locator(".number").evaluateAll((all) => all.map((one) => [one.querySelector("text").textContent, one.classList[1]]));
   return {
     wrong,
