@@ -110,8 +110,8 @@ LOOKS_OUT = 2.5
 """Seconds somebody stands at a window."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
-GOES_ON = 0.5
-"""What it is worth that a walk goes on as the one before it went (metres)."""
+GOES_ON = 1.5
+"""What it is worth that a walk goes on as the one before it went, or the next one as it goes (metres)."""
 WALLED = 0.08
 """How far a point of furniture may lie in the wall of its room (metres)."""
 STEP = 0.40
@@ -459,11 +459,11 @@ class _Stage:
             length, left = (float(np.hypot(*np.subtract(point, end))) for end in (start, onward or start))
             return (
                 min(length, 2.2 * PACING)
-                - 2.0 * max(PACING - min(length, left), 0.0)
+                - 4.0 * max(PACING - min(length, left), 0.0)
                 - 0.4 * max(length - 3 * PACING, 0.0)
                 + min(self.walkable.clearance(point), 0.8)
                 + (0.0 if came is None else GOES_ON * _straight_on(came, start, point))
-                + (0.0 if onward is None else _straight_on(start, point, onward))
+                + (0.0 if onward is None else GOES_ON * _straight_on(start, point, onward))
             )
 
         return max(points, key=worth)
