@@ -56,6 +56,8 @@ WRIST: Final = np.array([1.0, 1.0, 1.0, 0.0])
 """What of a detour is the wrist's."""
 STRAINED, STRAIN = float(np.radians(2)), 3.0
 """A shoulder so far beyond its range (radians) is brought back, and what a radian counts (metres)."""
+STRETCHED: Final = 0.98
+"""Of its length: an arm that a detour stretches farther snaps straight at the elbow."""
 STEP: Final = 1e-4
 """How far a wrist (metres) and an elbow (radians) are moved to see what goes with them."""
 FLOOR: Final = "floor"
@@ -148,7 +150,7 @@ class _Arms(NamedTuple):
         handles = {name: getattr(self.pose, name).copy() for name in HANDLES}
         reach, arms, elbows, pressing = handles.values()
         for index, arm in enumerate(self.wanted):
-            aside = detours[index, :, :3]
+            aside = _within_reach(arm, detours[index, :, :3])
             off = (rotations.length(aside)[:, 0] - LETS_GO[0]) / LETS_GO[1]
             pressing[:, index] *= 1 - smooth(off)
             reach[:, index] += aside
@@ -233,6 +235,13 @@ def _strain(arm: Arm, limb: Limb) -> Array:
     """How far the shoulder of bones (..., T, 3) is beyond its range. (..., T) radians."""
     upper, _ = arm_rotations(limb, arm.side)
     return out_of_cone(f"{arm.name}_shoulder", rotations.compose(rotations.inverse(arm.clavicle), upper))
+
+
+def _within_reach(arm: Arm, aside: Array) -> Array:
+    """Detours (T, 3) of a wrist on which its arm is stretched no farther than it was, or than `STRETCHED`."""
+    way = arm.way + aside
+    most = np.maximum(rotations.length(arm.way), STRETCHED * sum(arm.lengths))
+    return np.asarray(way * np.minimum(most / np.maximum(rotations.length(way), NOWHERE), 1.0) - arm.way)
 
 
 def _about(axes: Array, angles: Array, vectors: Array) -> Array:

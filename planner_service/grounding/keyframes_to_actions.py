@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, sin
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -110,6 +110,8 @@ LOOKS_OUT = 2.5
 """Seconds somebody stands at a window."""
 PACING = 1.5
 """A wandering walk goes at least this far, where the room allows it (metres)."""
+GOES_ON = 1.5
+"""What it is worth that a walk goes on as the one before it went, or the next one as it goes (metres)."""
 WALLED = 0.08
 """How far a point of furniture may lie in the wall of its room (metres)."""
 STEP = 0.40
@@ -382,7 +384,9 @@ class _Stage:
         for index, action in enumerate(drafts):
             if action.skill is Skill.LOCO and not aimed[index]:
                 following = drafts[index + 1] if index + 1 < len(drafts) else None
-                action = self._aimed(action, following, places[index], at, done)
+                came = done[-1][1] if done and done[-1][0].skill is Skill.LOCO else None
+                leg = _Leg(came, at, None if following is None else self._leads_to(following, places[index + 1]))
+                action = self._aimed(action, following, places[index], leg, done)
             if index == len(drafts) - 1:
                 action = _last(action)
             done.append((action, at))
@@ -394,11 +398,11 @@ class _Stage:
         action: Action,
         following: Action | None,
         place: Place,
-        at: Point | None,
+        leg: _Leg,
         done: Sequence[tuple[Action, Point | None]],
     ) -> Action:
         """A walk with its goal; who stands still or waves has none."""
-        wanders = place.object_id is None
+        wanders, at = place.object_id is None, leg.at
         if wanders and stays(action.caption) and self.windows[action.keyframe]:
             return self._looking_out(action, place, at)
         if wanders and action.goal is not None and (following is None or following.object_id != "floor"):
@@ -406,7 +410,7 @@ class _Stage:
         ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
         if ahead is not None:
             return replace(action, goal=ahead, facing=None)
-        return action if wanders and stays(action.caption) else self._walk(action, following, place, at)
+        return action if wanders and stays(action.caption) else self._walk(action, following, place, leg)
 
     def _looking_out(self, action: Action, place: Place, at: Point | None) -> Action:
         """Who is to stand at a window goes there and looks out."""
@@ -415,7 +419,7 @@ class _Stage:
             return replace(action, lacks=NO_WINDOW)
         return replace(action, goal=found.standing, facing=found.facing, stands=LOOKS_OUT)
 
-    def _walk(self, action: Action, following: Action | None, place: Place, at: Point | None) -> Action:
+    def _walk(self, action: Action, following: Action | None, place: Place, leg: _Leg) -> Action:
         same = following is not None and following.skill in NEEDS and following.object_id == action.object_id
         # What is done elsewhere than planned, at a window say, is reached by the walk to what was planned for it.
         same = same or (following is not None and following.keyframe in self.elsewhere)
@@ -426,17 +430,25 @@ class _Stage:
             beside = self._reachable(self.home.object(place.object_id), "touch")
             if beside:
                 return replace(action, goal=beside[0].standing, facing=beside[0].facing)
-        onward = following.spot.standing if following is not None and following.spot is not None else None
-        return replace(action, goal=self._anywhere(place.room, at, onward), facing=None)
+        return replace(action, goal=self._anywhere(place.room, leg), facing=None)
 
-    def _anywhere(self, room: int, at: Point | None, onward: Point | None) -> Point:
-        """A place to wander to: some way off, with room around it, not through the whole house, and not one that the
-        body would have to turn back at to get where it goes next.
+    def _leads_to(self, following: Action, place: Place) -> Point | None:
+        """Where the body goes next, as far as that is known."""
+        if following.spot is not None:
+            return following.spot.standing
+        if following.skill is not Skill.LOCO or place.object_id is None:
+            return following.goal
+        x, _, z = self.home.object(place.object_id).position
+        return (x, z)
+
+    def _anywhere(self, room: int, leg: _Leg) -> Point:
+        """A place to wander to: some way off, with room around it, not through the whole house, and neither one that a
+        walking body would have to turn back for nor one that it would have to turn back at to get where it goes next.
 
         A body that cannot get into the room from where it is is told of a place there all the same: the motion says so.
         """
         found = [self.walkable.random_point(self.rng, room) for _ in range(12)]
-        start = at
+        start, came, onward = leg.at, leg.came, leg.onward
         if start is None or not any(self.walkable.reachable(start, point) for point in found):
             start = self.walkable.random_point(self.rng, room)
         points = [point for point in found if self.walkable.reachable(start, point)]
@@ -444,15 +456,27 @@ class _Stage:
             raise UnreachableError(f"nothing in room {room} can be walked to from {start}")
 
         def worth(point: Point) -> float:
-            length = float(np.hypot(point[0] - start[0], point[1] - start[1]))
+            length, left = (float(np.hypot(*np.subtract(point, end))) for end in (start, onward or start))
             return (
                 min(length, 2.2 * PACING)
+                - 4.0 * max(PACING - min(length, left), 0.0)
                 - 0.4 * max(length - 3 * PACING, 0.0)
                 + min(self.walkable.clearance(point), 0.8)
-                + (0.0 if onward is None else _straight_on(start, point, onward))
+                + (0.0 if came is None else GOES_ON * _straight_on(came, start, point))
+                + (0.0 if onward is None else GOES_ON * _straight_on(start, point, onward))
             )
 
         return max(points, key=worth)
+
+
+class _Leg(NamedTuple):
+    """Three places of who walks; None where that is not known."""
+
+    came: Point | None
+    """Where the walk before this one began."""
+    at: Point | None
+    onward: Point | None
+    """Where the body goes after this walk."""
 
 
 def _straight_on(start: Point, middle: Point, end: Point) -> float:

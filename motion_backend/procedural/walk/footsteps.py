@@ -272,7 +272,9 @@ def plan_steps(
             feet.add(step.swing, phase, step.index)
     hopping = np.zeros(frames)
     for beat in _beats(route, phase, first, style, -1 if stride is None else stride.begun):
-        swing = _roomy(_swing_of(beat, feet, route, phase, style, skeleton, rng), room)
+        swing = _swing_of(beat, feet, route, phase, style, skeleton, rng, room)
+        middle = min(int(np.searchsorted(phase, sum(swing.window) / 2)), frames - 1)
+        swing = _roomy(swing, feet.ankles[middle, 1 - beat.index], room)
         hopping[_during(swing, phase)] = beat.hop
         feet.add(swing, phase, beat.index)
         made.append(Step(beat.number, beat.index, swing, beat.hop))
@@ -310,7 +312,14 @@ def _tiptoe(phase: Array, style: Walk, stride: Stride | None) -> Array:
 
 
 def _swing_of(
-    beat: _Beat, feet: Feet, route: Route, phase: Array, style: Walk, skeleton: Skeleton, rng: np.random.Generator
+    beat: _Beat,
+    feet: Feet,
+    route: Route,
+    phase: Array,
+    style: Walk,
+    skeleton: Skeleton,
+    rng: np.random.Generator,
+    room: Room,
 ) -> Swing:
     """The step from where the foot stands to where the root will pass over it."""
     rows, side = footstep_table(), 1 if beat.index == 0 else -1
@@ -325,7 +334,7 @@ def _swing_of(
     width += side * style.character.width_sides_m
     target = home_ankle(middle, float(route.heading[at]), beat.index, width, skeleton)
     apart = min(place.apart_m, place.apart_ratio * stance) * skeleton.scale
-    target = _clear_of(beside, target, heading, side, apart)
+    target = _clear_of(beside, target, (heading, side, skeleton.scale), apart, room)
     # A foot rolls off over its toes as it points then, and lands on its heel as it points there.
     full = shape.full_stride_m * skeleton.scale
     leaves, stride = (_forward(target - origin, points, full) for points in (yaw, heading))
@@ -353,14 +362,21 @@ def _swing_of(
     )
 
 
-def _roomy(swing: Swing, room: Room) -> Swing:
-    """The same with less of an arc aside, or with one to the other side, where there is no room for a foot."""
-    share = np.array(ON_ITS_WAY)[:, None]
-    ankles = (1 - share) * swing.start + share * swing.end + swing.bow
-    yaw = swing.start_yaw + share * swing.turn
-    tips = ankles[:, [0, 2]] + TIP * swing.scale * np.concatenate([np.sin(yaw), np.cos(yaw)], axis=1)
-    lack = max(FOOT_ROOM - float(room(ankles[1:2, [0, 2]])[0]), TIP_ROOM - float(room(tips).min()), 0.0)
-    return replace(swing, bow_share=max(1 - lack / float(np.linalg.norm(swing.bow)), -1.0)) if lack else swing
+def _roomy(swing: Swing, beside: Array, room: Room) -> Swing:
+    """The same with less of an arc aside, or with one to the other side as far as the foot that stands (3,) leaves it,
+    where there is no room for a foot."""
+    share, bow = np.array(ON_ITS_WAY), float(np.linalg.norm(swing.bow))
+    ankles = np.outer(1 - share, swing.start) + np.outer(share, swing.end) + swing.bow
+    lack = _lack(ankles, swing.start_yaw + share * swing.turn, swing.scale, room)
+    apart = footstep_table().place.apart_m * swing.scale
+    inwards = float((ankles[1] - beside) @ swing.bow) / bow - bow - apart
+    return replace(swing, bow_share=max(1 - lack / bow, -max(inwards / bow, 1.0))) if lack else swing
+
+
+def _lack(ankles: Array, yaw: Array, scale: float, room: Room) -> float:
+    """How much room a foot lacks (metres) where it is worst: ankles (N, 3), yaw (N,)."""
+    tips = ankles[:, [0, 2]] + TIP * scale * np.stack([np.sin(yaw), np.cos(yaw)], axis=1)
+    return max(FOOT_ROOM - float(room(ankles[:, [0, 2]]).min()), TIP_ROOM - float(room(tips).min()), 0.0)
 
 
 def _faces(route: Route, at: int, lands: int, side: int, place: LandingPlace) -> float:
@@ -399,14 +415,20 @@ def _widths(route: Route, at: int, style: Walk, place: LandingPlace) -> tuple[fl
     return stance, stance * (1 - narrower * straight_on) * style.character.width_ratio**straight_on
 
 
-def _clear_of(beside: Array, target: Array, heading: float, side: int, apart: float) -> Array:
-    """A landing place moved outwards where it would be too near to the other foot, or across it. (3,)."""
-    row, outward = footstep_table().place, side * np.array([np.cos(heading), 0.0, -np.sin(heading)])
+def _clear_of(beside: Array, target: Array, faces: tuple[float, int, float], apart: float, room: Room) -> Array:
+    """A landing place moved outwards where it would be too near to the other foot, or across it. (3,).
+
+    Where there is no room for that the feet come down before each other. `faces` is yaw, side and size of the foot.
+    """
+    row, (heading, side, scale) = footstep_table().place, faces
+    outward = side * np.array([np.cos(heading), 0.0, -np.sin(heading)])
     along = np.array([np.sin(heading), 0.0, np.cos(heading)])
     gap = target - beside
-    lack = apart - float(gap @ outward)
-    near = abs(float(gap @ along)) < row.beside_m
-    return np.asarray(target + np.clip(lack, 0.0, row.aside_max_m) * near * outward)
+    ahead = min(abs(float(gap @ along)) / row.beside_m, 1.0)
+    aside = float(np.clip(apart - float(gap @ outward), 0.0, row.aside_max_m)) * (ahead < 1)
+    clear = target + aside * outward
+    lack = _lack(clear[None], np.array([heading]), scale, room) if aside else 0.0
+    return np.asarray(clear - min(lack, ahead * aside) * outward)
 
 
 def _soften(values: Array) -> Array:

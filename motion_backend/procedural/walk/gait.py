@@ -22,11 +22,10 @@ from motion_backend.procedural.walk.pelvis_height import landing, lifted
 from motion_backend.procedural.walk.root_path import SPACING, Route, evenly, plan_route, resample
 from motion_backend.procedural.walk.stride import BEATS, Stride
 from motion_backend.procedural.walk.walk_styles import Walk
+from motion_backend.procedural.walk.way_junction import junction_table
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-FEET_CHANGE = (0.4, 0.6)
-"""So much of a step sooner or later, at most, a walk goes over into the next: both feet are down once in it."""
 BEYOND = 24
 """So many frames are known of how a walk would have gone on that is cut off (its weight is shifted for them)."""
 ABOUT = 3
@@ -84,7 +83,7 @@ def walk_on(
     if cut_m is None:
         return pose, None, None
     reached = route.reaches(cut_m)
-    last = _as_feet_change(steps, reached)
+    last = _as_feet_change(steps, pose.pelvis, reached)
     between = slice(min(reached, last), max(reached, last) + 1)
     onwards_m = float(np.linalg.norm(np.diff(route.position[between], axis=0), axis=1).sum())
     gone_m = max(cut_m + (onwards_m if last > reached else -onwards_m), 0.0)
@@ -94,12 +93,12 @@ def walk_on(
     return pose.at(slice(0, made)), stride, pose.at(slice(made, made + BEYOND))
 
 
-def _as_feet_change(steps: Steps, frame: int) -> int:
-    """The frame within half a step of that one about which feet are slowest and change their pace least: nobody changes
-    his walk in mid-swing, nor as a foot comes down."""
+def _as_feet_change(steps: Steps, pelvis: Array, frame: int) -> int:
+    """The frame within half a step of that one about which feet are slowest and change their pace least, while the body
+    goes on: nobody changes his walk in mid-swing, as a foot comes down, nor over a foot."""
     from scipy.ndimage import maximum_filter1d
 
-    sooner, later = FEET_CHANGE
+    sooner, later = junction_table().feet_change_steps
     about = np.array([-sooner, later]) + steps.phase[frame]
     first, last = np.clip(np.searchsorted(steps.phase, about), (frame + 1) // 2, len(steps.phase) - 1)
     if last <= first:
@@ -107,7 +106,9 @@ def _as_feet_change(steps: Steps, frame: int) -> int:
     # What comes just before and after these frames counts as well.
     gone = np.diff(steps.ankles, axis=0)
     rough = rotations.length(gone) + rotations.length(np.diff(gone, axis=0, prepend=gone[:1]))
-    return int(first + np.argmin(maximum_filter1d(rough[..., 0].max(axis=1), ABOUT, mode="nearest")[first:last]))
+    rough = maximum_filter1d(rough[..., 0].max(axis=1), ABOUT, mode="nearest")[first:last]
+    speed = rotations.length(np.diff(pelvis[:, [0, 2]], axis=0))[first:last, 0]
+    return int(first + np.argmin(np.where(speed >= np.median(speed), rough, np.inf)))
 
 
 def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:

@@ -97,6 +97,8 @@ HASTE = re.compile(r"\b(?:quick|run|rush|hurr|dash|fast)", re.IGNORECASE)
 """Words of a caption that ask for haste."""
 OFTEN, NEARLY = 0.9, 0.9
 """A way with so little room that all but the fastest frames, this share, are slower than so much of it is told."""
+GOES_ON = 1.0
+"""So far a walk leads on after a spin, where it is twice as long (metres)."""
 HALTS = 0.6
 """How far a walk goes on that has to stop (metres)."""
 ELBOW_ROOM = 0.26
@@ -227,7 +229,7 @@ def _through(body: Body, path: Array, onward: Point) -> ThroughWay | None:
 def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
     """Walk to the roomiest place of the path's second half and spin there; returns the way that is left."""
     points = resample(path)
-    half = points[len(points) // 2 :]
+    half = points[len(points) // 2 : max(len(points) - int(GOES_ON / SPACING), len(points) // 2 + 1)]
     split = len(points) // 2 + int(np.argmax(body.scene.walkable.field.at(half)))
     _stride(body, points[: split + 1], None, style)
     return np.concatenate([[body.place], points[split:]])

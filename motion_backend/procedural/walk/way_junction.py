@@ -5,8 +5,9 @@ Numbers are in data/gait/way_junction.toml.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
@@ -33,7 +34,9 @@ class JunctionTable:
     arrives_m: float
     """Of a way that is known by its direction alone: its last piece."""
     beyond_m: float
-    """So far past the place where the ways join a walk is cut off."""
+    """So far past the place where the ways join a walk goes over into the next,"""
+    feet_change_steps: tuple[float, float]
+    """or so much of a step sooner or later, at most: both feet are down once in that."""
     arc_from_rad: float
     """A turn of less cuts the corner, one of more goes round in an arc."""
     cuts_m: tuple[float, ...]
@@ -42,8 +45,12 @@ class JunctionTable:
     """Of the arc, likewise."""
     passes_m: float
     """From where the first way ends the joined one passes no farther."""
-    before_ratio: float
-    """Of its radius, that the arc begins before the place."""
+    wide_m: tuple[float, ...]
+    """Where one way goes over into the next an arc may be as wide as this."""
+    before_ratios: tuple[float, ...]
+    """Of its radius, that the arc begins before the place: the first that has room."""
+    other_way_rad: float
+    """An arc may go round the other way where that is no more."""
     back_m: float
     """Over which the way that leads on is joined."""
     round_from_rad: float
@@ -75,18 +82,26 @@ def through_way(path: Array, onward: Array, fits: Fits) -> ThroughWay | None:
         return None
     arrives, leaves = _direction(first[::-1], row) * -1.0, _direction(second, row)
     turn = float(rotations.wrap(np.arctan2(*leaves) - np.arctan2(*arrives)))
-    for size in row.cuts_m if abs(turn) < row.arc_from_rad else row.radii_m:
-        sharp = abs(turn) >= row.arc_from_rad
-        joined = _arc(first, second, arrives, turn, size) if sharp else _cut(first, second, size)
-        if joined is not None and fits(joined):
-            points = resample(joined)
-            away = np.linalg.norm(points - first[-1], axis=1)
-            near = int(np.argmin(away))
-            if away[near] > row.passes_m:
-                continue
+    sharp = abs(turn) >= row.arc_from_rad
+    for joined in _arcs(first, second, arrives, turn) if sharp else (_cut(first, second, size) for size in row.cuts_m):
+        if joined is None or not fits(joined):
+            continue
+        points = resample(joined)
+        away = np.linalg.norm(points - first[-1], axis=1)
+        near = int(np.argmin(away))
+        if away[near] <= row.passes_m:
             cut = min(near * SPACING + row.beyond_m, SPACING * (len(points) - 1) - row.onward_min_m / 2)
             return ThroughWay(points, cut)
     return None
+
+
+def _arcs(first: Array, second: Array, arrives: Array, turn: float) -> Iterator[Array | None]:
+    """All arcs that join two ways, the widest first: round the shorter way or the other, sooner or later begun."""
+    row = junction_table()
+    other = turn - np.sign(turn) * 2 * np.pi
+    turns = [turn, other] if abs(other) <= row.other_way_rad else [turn]
+    for radius, about, before, back in product(row.wide_m + row.radii_m, turns, row.before_ratios, (row.back_m, 0.0)):
+        yield _arc(first, second, arrives, about, radius, back, before * radius)
 
 
 def _direction(points: Array, row: JunctionTable) -> Array:
@@ -106,20 +121,22 @@ def _cut(first: Array, second: Array, size: float) -> Array | None:
     return np.concatenate([first[: -1 - steps], curve, second[steps + 1 :]])
 
 
-def _arc(first: Array, second: Array, arrives: Array, turn: float, radius: float) -> Array | None:
-    """An arc of that radius from the first way's direction round to the second's, which is joined little by little and
-    ends where it did; None where too little of it is left for that."""
-    row, before = junction_table(), int(junction_table().before_ratio * radius / SPACING)
-    before = min(before, len(first) - 1)
+def _arc(
+    first: Array, second: Array, arrives: Array, turn: float, radius: float, back_m: float, before_m: float = 0.0
+) -> Array | None:
+    """An arc of that radius from the first way's direction, so far before its end, round to the second's, which is
+    joined little by little, over `back_m` at least, and ends where it did; None where too little of it is left."""
+    before = min(int(before_m / SPACING), len(first) - 1)
     start, side = first[-1 - before], np.sign(turn) * np.array([arrives[1], -arrives[0]])
     angle = np.linspace(0.0, abs(turn), max(int(abs(turn) * radius / SPACING), 2))[:, None]
     curve = start + radius * (np.sin(angle) * arrives + (1 - np.cos(angle)) * side)
     nearest = int(np.argmin(np.linalg.norm(second - curve[-1], axis=1)))
     rest = second[nearest:]
     left, off = SPACING * (len(rest) - 1), curve[-1] - rest[0]
-    if left < JOINS * float(np.linalg.norm(off)):
+    least = JOINS * float(np.linalg.norm(off))
+    if left < least:
         return None
-    away = smooth(SPACING * np.arange(len(rest)) / min(row.back_m, left))[:, None]
+    away = smooth(SPACING * np.arange(len(rest)) / min(max(back_m, least, SPACING), left))[:, None]
     return np.concatenate([first[: -1 - before], curve, (rest + (1 - away) * off)[1:]])
 
 
@@ -133,7 +150,7 @@ def way_from(path: Array, yaw: float, fits: Fits) -> Array:
     if abs(turn) < row.round_from_rad:
         return path
     for radius in row.radii_m:
-        curved = _arc(points[:1], points, ahead, turn, radius)
+        curved = _arc(points[:1], points, ahead, turn, radius, row.back_m)
         if curved is not None and len(points) * SPACING > 2 * radius and fits(curved):
             return curved
     return path

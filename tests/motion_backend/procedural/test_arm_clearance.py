@@ -14,12 +14,13 @@ from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.motion import FPS, Action, Emotion, Posture, Skill
-from motion_backend.procedural.arm_clearance import FASTEST, Around, arms_clear
+from motion_backend.procedural.arm_clearance import FASTEST, STRETCHED, Around, _within_reach, arms_clear
 from motion_backend.procedural.arm_collision import _Box, _out_of_box
+from motion_backend.procedural.arm_solver import Arm
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose, concatenate, interpolate
-from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.pose_solver import chest_frame, solve
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.evaluation.trials import Trial, act_trial
 
@@ -112,6 +113,18 @@ def test_a_hand_stretched_through_a_wall_comes_back_to_its_own_side() -> None:
     out = cleared(pose, pose.at(0), wall(reach - 0.10))
     assert joint(out, "left_wrist")[20:, 0].max() < reach - 0.10
     np.testing.assert_allclose(joint(out, "right_wrist"), joint(pose, "right_wrist"), atol=1e-6)
+
+
+@for_each("arms", ["hang", "hips", "open"])
+def test_no_detour_stretches_an_arm_until_its_elbow_snaps_straight(arms: str) -> None:
+    pose = stood(arms, 60)
+    arm = Arm.of(pose, SKELETON, 0, chest_frame(pose, SKELETON))
+    aside = np.linspace(0.0, 0.3, 60)[:, None] * rotations.normalize(arm.way)
+    way, most = arm.way + _within_reach(arm, aside), STRETCHED * sum(arm.lengths)
+    assert np.linalg.norm(way, axis=1).max() == pytest.approx(max(most, float(np.linalg.norm(arm.way[0]))))
+    short = np.linalg.norm(arm.way + aside, axis=1) <= most
+    assert short.any() or arms == "open"
+    np.testing.assert_allclose(way[short], (arm.way + aside)[short])
 
 
 def test_the_touching_hand_is_left_where_it_is_laid() -> None:

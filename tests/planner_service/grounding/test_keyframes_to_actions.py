@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -96,6 +97,18 @@ def test_wandering_goes_some_way_and_stays_on_free_floor() -> None:
     assert WALKABLE.is_free(first.goal)
     assert WALKABLE.is_free(second.goal)
     assert np.hypot(first.goal[0] - second.goal[0], first.goal[1] - second.goal[1]) > 1.0
+
+
+def test_who_wanders_on_turns_back_less_often_than_not_on_the_way_to_a_thing_too() -> None:
+    back = []
+    for seed in range(30):
+        walks = grounded(("loco", "walk", None), ("loco", "walk", None), ("loco", "walk", "shelf"), seed=seed)
+        ways = np.diff([scene_of(HOME).beginning(seed)[0], *(walk.goal for walk in walks)], axis=0)
+        lengths = np.linalg.norm(ways, axis=1)
+        assert lengths.min() > 0.5
+        back += [float(one @ other) for one, other in pairwise(ways / lengths[:, None])]
+    # In a room of 6 m many do all the same: 72 of 100 where it is not minded.
+    assert np.mean(np.array(back) < -0.8) < 0.55
 
 
 def test_the_first_walk_sets_out_from_where_the_body_begins() -> None:

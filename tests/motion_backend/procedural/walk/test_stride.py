@@ -16,6 +16,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.walk.footsteps import _clear_of
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.root_path import plan_route
 from motion_backend.procedural.walk.stride import Stride
@@ -145,6 +146,23 @@ def test_steps_go_on_in_turns_over_the_seam() -> None:
         assert 0.6 < between[near] / np.median(between) < 1.6
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_foot_beside_a_sofa_comes_down_before_the_other_rather_than_in_it(side: int) -> None:
+    beside, apart = np.zeros(3), 0.095
+
+    def landed(ahead: float, front: float) -> float:
+        def room(places: np.ndarray) -> np.ndarray:
+            return np.asarray(front - side * places[:, 0]) - 0.22
+
+        target = np.array([-0.05 * side, 0.0, ahead])
+        return float(side * _clear_of(beside, target, (0.0, side, 1.0), apart, room)[0])
+
+    assert landed(0.3, 9.0) == pytest.approx(apart)
+    assert -0.05 <= landed(0.3, 0.2) < 0.06
+    # A foot that is beside the other has to keep off it all the same.
+    assert landed(0.0, 0.2) == pytest.approx(apart)
+
+
 @pytest.mark.parametrize("degrees", [20, 100, -160, 180])
 def test_a_way_that_leads_on_keeps_both_ends_and_passes_the_place_between(degrees: float) -> None:
     turn, corner = np.radians(degrees), np.array([0.0, LENGTH])
@@ -163,6 +181,22 @@ def test_where_there_is_no_room_one_way_does_not_lead_into_the_next() -> None:
     back = corner[::-1]
     assert through_way(corner, back, in_a_passage) is None
     assert through_way(corner, np.array([[0.0, LENGTH], [0.2, LENGTH]]), everywhere) is None
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_who_has_no_room_on_one_side_turns_about_on_the_other(side: int) -> None:
+    def fits(points: np.ndarray) -> bool:
+        return bool((side * points[:, 0]).min() > -0.12 and points[:, 1].max() < LENGTH + 0.3)
+
+    corner = np.array([0.0, LENGTH])
+    for degrees in (170, -170, 180):
+        turn = np.radians(degrees)
+        onward = np.array([corner, corner + LENGTH * np.array([abs(np.sin(turn)) * side, np.cos(turn)])])
+        way = through_way(np.array([[0.0, 0.0], corner]), onward, fits)
+        assert way is not None
+        heading = np.unwrap(np.arctan2(*np.diff(way.points, axis=0).T))
+        assert side * (heading[-1] - heading[0]) > 0
+        assert np.linalg.norm(way.points - corner, axis=1).min() <= junction_table().passes_m
 
 
 @pytest.mark.parametrize("degrees", [90, -150])
