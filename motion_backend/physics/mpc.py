@@ -82,7 +82,7 @@ PRICES: Final = _prices()
 PRICES_PELVIS: Final[Array] = PRICES * np.repeat([10.0, 1.0, 5.0, 1.0], [6, NV - 6, 6, NV - 6])
 """The same where the pelvis comes first. Where the body gets up from the floor, joints that are as planned are worth
 nothing if the pelvis stays down, since hands and knees that are not where they should be carry nothing. Where it lies
-down, the whole body would come to lie to one side of its place."""
+down, the whole body would come to lie to one side of its place; where it stands up from its knees quickly, it fell."""
 PRICES_WALKING: Final[Array] = PRICES * np.where(np.arange(NX) == 1, 10.0, 1.0)
 """The same where it walks: the height of the pelvis counts ten times as much, since it sank by a centimetre and feet
 hung as much lower."""
@@ -224,7 +224,7 @@ class Controller:
 
     def _prices(self, at: int) -> Array:
         match self.reference.doing[at]:
-            case Doing.LIES | Doing.RISES:
+            case Doing.LIES | Doing.RISES | Doing.STANDS_UP:
                 return PRICES_PELVIS
             case Doing.WALKS:
                 stands = self.reference.planted[at].reshape(2, 2).any(axis=1)

@@ -49,6 +49,8 @@ class Doing(IntEnum):
     """Goes down to lie, or lies."""
     RISES = 4
     """Gets up from the floor, on hands and knees."""
+    STANDS_UP = 5
+    """From its knees."""
 
 
 @dataclass(frozen=True)

@@ -23,18 +23,20 @@ from motion_backend.physics.reference import Doing, Plan, Reference
 from motion_backend.physics.tracker import Tracked
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import REFERENCE_HEIGHT, Skeleton
+from motion_backend.skeleton import INDEX, REFERENCE_HEIGHT, Skeleton
 from scene_graphs.home import Home
 
 WINDOW, BESIDE = 60, (15, 30)
 """Frames that are simulated among the same boxes, and those before and after whose surroundings count too."""
 LOW: Final = 0.35
 """A pelvis below this share of its standing height at the beginning gets up from the floor, and not from a bed."""
+KNEES: Final = 0.2
+"""A knee that is lower than this share of that carries the body. Before a seat both are twice as high or more."""
 DOING: Final = {
     PhaseKind.WALK: Doing.WALKS, PhaseKind.TOUCH: Doing.REACHES, PhaseKind.EDGE: Doing.LIES,
-    PhaseKind.LIEDOWN: Doing.LIES, PhaseKind.GETUP: Doing.RISES,
+    PhaseKind.LIEDOWN: Doing.LIES, PhaseKind.GETUP: Doing.RISES, PhaseKind.STANDUP: Doing.STANDS_UP,
 }  # fmt: skip
-"""What is followed otherwise; getting up from a bed is not."""
+"""What is followed otherwise; getting up from a bed and from a seat are not."""
 
 
 @dataclass(frozen=True)
@@ -107,11 +109,21 @@ class Task:
 def doing(motion: Motion) -> NDArray[np.int8]:
     """What a motion does in every frame, as far as it is followed otherwise for it: `Doing`. (T,)."""
     found = np.full(len(motion), Doing.OTHER, dtype=np.int8)
-    low = LOW * motion.skeleton.standing_height
     for phase in motion.phases:
-        from_bed = phase.kind is PhaseKind.GETUP and motion.root_positions[phase.start, 1] >= low
-        found[phase.start : phase.stop] = Doing.OTHER if from_bed else DOING.get(phase.kind, Doing.OTHER)
+        does = DOING.get(phase.kind, Doing.OTHER)
+        if does in (Doing.RISES, Doing.STANDS_UP) and not _low(motion.part(phase.start, phase.start + 1), does):
+            does = Doing.OTHER
+        found[phase.start : phase.stop] = does
     return found
+
+
+def _low(beginning: Motion, does: Doing) -> bool:
+    """Whether a body gets up from the floor or from its knees, and not from a bed or a seat, by its first frame."""
+    low = LOW * beginning.skeleton.standing_height
+    if does is Doing.RISES:
+        return bool(beginning.root_positions[0, 1] < low)
+    knees = beginning.joint_positions()[0, [INDEX["left_knee"], INDEX["right_knee"]], 1]
+    return bool(knees.min() < KNEES * beginning.skeleton.standing_height)
 
 
 def plan_of(motion: Motion) -> Plan:

@@ -203,8 +203,10 @@ def all_along(plan: Plan, doing: Doing) -> Plan:
 
 def test_the_pelvis_comes_first_on_the_way_down_to_lie_as_on_the_way_up() -> None:
     plan = plan_of(walk())
-    lies, rises, does = (prices(all_along(plan, one), 4) for one in (Doing.LIES, Doing.RISES, Doing.OTHER))
+    ups = (Doing.LIES, Doing.RISES, Doing.STANDS_UP, Doing.OTHER)
+    lies, rises, stands_up, does = (prices(all_along(plan, one), 4) for one in ups)
     np.testing.assert_array_equal(lies, rises)
+    np.testing.assert_array_equal(lies, stands_up)
     assert (lies[:6] > does[:6]).all()
 
 
@@ -224,12 +226,16 @@ def test_the_leg_that_swings_is_to_be_where_it_is_planned_and_the_one_that_stand
 
 
 def test_a_plan_knows_what_it_does_in_every_frame() -> None:
-    motion = walk().part(0, 60)
-    kinds = (PhaseKind.WALK, PhaseKind.EDGE, PhaseKind.LIEDOWN, PhaseKind.SITDOWN, PhaseKind.TOUCH, PhaseKind.GETUP)
+    motion = walk().part(0, 70)
+    kinds = (
+        PhaseKind.WALK, PhaseKind.EDGE, PhaseKind.LIEDOWN, PhaseKind.SITDOWN, PhaseKind.TOUCH, PhaseKind.GETUP,
+        PhaseKind.STANDUP,
+    )  # fmt: skip
     phases = tuple(Phase(kind, 10 * index, 10 * index + 10) for index, kind in enumerate(kinds))
     motion = replace(motion, phases=phases)
-    from_bed = [Doing.WALKS, Doing.LIES, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.OTHER]
+    from_bed = [Doing.WALKS, Doing.LIES, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.OTHER, Doing.OTHER]
     assert plan_of(motion).doing[::10].tolist() == from_bed
     low = replace(motion, root_positions=motion.root_positions * np.array([1, 0.2, 1], dtype=np.float32))
-    assert plan_of(low).doing.tolist() == np.repeat([*from_bed[:-1], Doing.RISES], 10).tolist()
+    from_floor = [*from_bed[:-2], Doing.RISES, Doing.STANDS_UP]
+    assert plan_of(low).doing.tolist() == np.repeat(from_floor, 10).tolist()
     assert plan_of(low).part(slice(5, 15)).doing.tolist() == [Doing.WALKS] * 5 + [Doing.LIES] * 5
