@@ -456,7 +456,7 @@ class KeyframeWriter:
         here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
         asked = dict.fromkeys((read.room, room_of(read.clause), here))
         rooms = [room for room in asked if room is not None and room in self._rooms]
-        near = [k.furniture for k in self.keyframes[:-3:-1] if not (deed.named or k.on_floor)]
+        near = [] if deed.named else [one.furniture for one in self._near()]
         last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
         last = [*last, *self._there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says
@@ -475,6 +475,15 @@ class KeyframeWriter:
         general = [piece for those in usual.values() for piece in those[need]]
         options = [*last, *deed.pieces, *(() if deed.pieces else usual["living_room"][need]), *general]
         return None, next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
+
+    def _near(self) -> list[PlannedKeyframe]:
+        """What was last done at furniture, in the room that one is in."""
+        near: list[PlannedKeyframe] = []
+        for one in self.keyframes[:-3:-1]:
+            near += [] if one.on_floor else [one]
+            if one.skill is Skill.LOCO and one.on_floor and one.room is not None:
+                break  # gone to another room
+        return near
 
     def _there(self, deed: Deed) -> Sequence[str]:
         """Where one has just gone, and what is sat on there: "walks to the desk and sits down"."""

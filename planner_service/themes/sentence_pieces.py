@@ -106,6 +106,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     rest = tokens[place + 1 :]
     if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
         return False
+    if low == "but" and place and tokens[place - 1].low in ("nothing", "nobody", "none"):
+        return False  # "finds nothing but a biscuit"
     if low == "until" and _is_of_laughing(tokens[:place], rest):
         return False
     ahead = rest[0].low if rest else ""
