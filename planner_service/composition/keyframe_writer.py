@@ -414,8 +414,9 @@ class KeyframeWriter:
                 return True
             caption = others[0]
         self._is_there(piece, room)
-        stands = last is not None and last.furniture == piece != "floor" and None in (room, last.room)
-        self._put(index, skill, mood, caption, piece, last.room if stands and last is not None else room)
+        for here in self.keyframes[-1:]:  # where one is nobody walks to
+            room = here.room if here.furniture == piece != "floor" and None in (room, here.room) else room
+        self._put(index, skill, mood, caption, piece, room)
         self._lay(read, skill)
         return True
 
