@@ -174,8 +174,8 @@ class DeedReader:
     def _deed(self, clause: Clause, about: str) -> Deed | None:
         told, likely, never = deed_of(clause, about), self.likely(clause), self._never(clause)
         if told is not None and never:
-            told, by_table = _without(told, never), told
-            if told is None or (by_table.row.captions and self._misled(clause)):
+            told = _without(told, never)
+            if told is None or (told.row.captions and self._misled(clause)):
                 return told  # nothing else is played for what would be shown by its opposite
         if likely is None or (told is not None and told.row.why):
             return told
