@@ -37,6 +37,10 @@ _TEENAGE: Final = re.compile(
 )
 _RETIRED: Final = re.compile(r"\b(?:retired|former|ex)\b", re.IGNORECASE)
 """Whose work is over wears nothing for it."""
+_LEFT_ALONE: Final = re.compile(
+    r"\b(?:since|after|when) (?:(?:his|her|their|my) (?:husband|wife)|[A-Z]\w+) (?:had )?(?:died|passed away)\b"
+)
+"""Whose husband or wife has died is a widow or widower."""
 _IS: Final = r"(?:\s+(?:is|was|am)|['’](?:s|m))\s+(?:still\s+|only\s+|just\s+)?(?:an?\s+|the\s+)?(?P<told>[^,.;!?]+)"
 _AS: Final = re.compile(
     r"\b(?:works|working|work|job)\s+as\s+an?\s+(?P<told>[^,.;!?]+)|^as\s+an?\s+(?P<first>[^,.;!?]+)", re.IGNORECASE
@@ -197,6 +201,7 @@ def description_of(theme: str, character: Character) -> str:
         found += [one["told"] for one in re.finditer(rf"\b{plain}{_IS}", theme, re.IGNORECASE)]
         found += [one[1] for one in re.finditer(rf"\b{plain},\s+((?:an?|the|my|our|aged)\s[^,.;!?]+)", theme)]
     found += [one["told"] or one["first"] for one in _AS.finditer(theme)]
+    found += ["widow"] if _LEFT_ALONE.search(theme) else []
     return "; ".join(found)
 
 

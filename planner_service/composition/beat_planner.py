@@ -26,6 +26,7 @@ from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
 from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from planner_service.themes.details import details_of
+from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
@@ -146,14 +147,20 @@ def _besides(
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     if index in writer.moody:
         seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
-        known = (read.sure or read.beat.kind == "feeling") and seen
+        known = (read.sure or read.beat.kind == "feeling") and seen and not _does_more(read)
         return details_of(read.clause) if known else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
     own = [one for one in own if not connects(one)] or own
-    if deed is not None and not writer.reader.is_shown(read.clause, deed, own):
+    if deed is not None and not writer.reader.is_shown(read.clause, deed, own, index in writer.linked):
         return (read.text,)
     return unshown(read.clause, {one.piece[0] for one in own}) if read.beat.kind == "deed" else ()
+
+
+def _does_more(read: ReadBeat) -> bool:
+    """Whether a beat of which only the mood is seen tells of something that is done in it: "plays a sad song"."""
+    moods = theme_words()["state_verbs"] | {"", *EXPRESSIONS}
+    return read.beat.kind == "deed" and read.clause.verb not in moods
 
 
 @dataclass

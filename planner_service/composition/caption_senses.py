@@ -36,18 +36,33 @@ class Sense:
 
 
 @table
+class Contradiction:
+    """Deeds that captions must not be played for: they say the opposite, or show another thing in the hands."""
+
+    captions: tuple[str, ...]
+    """Parts of captions."""
+    says: tuple[str, ...]
+
+
+@table
 class SenseTable:
     """data/caption_senses.toml."""
 
     sense: tuple[Sense, ...]
+    contradiction: tuple[Contradiction, ...]
+
+
+@cache
+def _table() -> SenseTable:
+    known: SenseTable = read_table("planner_service", "caption_senses.toml", SenseTable)
+    return known
 
 
 @cache
 def senses(skill: Skill, caption: str) -> tuple[str, ...]:
     """The ways to say what a caption shows."""
-    known: SenseTable = read_table("planner_service", "caption_senses.toml", SenseTable)
     fitting = (
-        one for one in known.sense
+        one for one in _table().sense
         if one.skill is skill and (not one.captions or any(part in caption.lower() for part in one.captions))
     )  # fmt: skip
     return tuple(way for one in fitting for way in one.says)
@@ -59,6 +74,13 @@ def shows(skill: Skill, caption: str, clause: Clause) -> bool:
         return False
     ways = senses(skill, caption)
     return any(says(ways, lemmas) for lemmas in readings(clause))
+
+
+def contradicted(clause: Clause) -> tuple[str, ...]:
+    """Parts of captions that must not be played for what a clause tells: of "lets it ring" those of the phone."""
+    told = tuple(readings(clause))
+    fitting = (one for one in _table().contradiction if any(says(one.says, lemmas) for lemmas in told))
+    return tuple(part for one in fitting for part in one.captions)
 
 
 def _is_touched(noun: str) -> bool:

@@ -67,6 +67,12 @@ _LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| e
 _PLACED: Final = frozenset(("in", "on", "under", "behind", "beneath", "below", "inside", "at", "above", "beside",
                              "between", "into", "onto", "with"))  # fmt: skip
 """Words that each place of a list begins with."""
+_INSIDE: Final = re.compile(r"\b(?:crawl|creep|crept|climb|slip|squeez)\w* (?:back )?(?:inside|in)(?: with\b|$)")
+"""Into what was named before."""
+_ALONE: Final = frozenset(("picture", "clock"))
+"""Pieces that, as lamps, are themselves what something is done to."""
+_PICTURES: Final = frozenset(("photo", "photograph", "portrait", "frame", "poster", "drawing", "sketch", "wall"))
+"""What hands do to these is seen at a picture."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 _ANYWHERE: Final = ("table", "kitchen counter", "desk", "cabinet")
 """Where a thing may be of which nobody knows where it is kept."""
@@ -211,6 +217,7 @@ def listed_places(clause: Clause) -> list[str]:
     begins = [part.split()[0].lower() for part in parts[1:]]
     led = all(word in _PLACED for word in begins)
     bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split()[2:])
+    bare = bare and re.search(r"\b(?:and|or)\b", clause.text) is not None  # "opens the box, a scarf" names what it is
     known = [piece for some in places for piece in some if affords(piece, "touch")]
     return list(dict.fromkeys(known)) if (led or bare) and len(set(known)) > 1 and len(known) == len(parts) else []
 
@@ -313,7 +320,8 @@ def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
 
 def _named(clause: Clause, about: str) -> list[str]:
     """Furniture that a clause names, or means by "it" and "there"."""
-    return pieces_in(clause.text) or (pieces_in(about)[-1:] if _IT & set(clause.lemmas[1:]) else [])
+    meant = _IT & set(clause.lemmas[1:]) or _INSIDE.search(clause.text)
+    return pieces_in(clause.text) or (pieces_in(about)[-1:] if meant else [])
 
 
 def row_of(clause: Clause, about: str) -> DeedRow | None:
@@ -404,6 +412,14 @@ def _kept(clause: Clause, about: str) -> tuple[str, ...]:
     return next((places[word] for word in reversed(_lemmas(about)) if word in places), ())
 
 
+def is_another(clause: Clause, piece: str) -> bool:
+    """Whether a piece is itself a thing, a lamp or a picture, and no place for the other thing that hands do a deed to:
+    nobody lights a candle at a lamp."""
+    kept = things().get(object_of(clause)) if _PICTURES.isdisjoint(clause.lemmas) else None
+    alone = furniture.class_of(piece) == "light" or furniture.canonical(piece) in _ALONE
+    return kept is not None and piece not in kept and alone
+
+
 def _lemmas(text: str) -> list[str]:
     return [lemma_of(token.text) for token in tokens_of(text)]
 
@@ -453,16 +469,21 @@ def _forms(word: str) -> tuple[str, ...]:
 
 def pieces_in(text: str) -> list[str]:
     """Furniture words of a text in its order, longest names first: "dining table", not "table"."""
+    return [piece for _, piece in pieces_told(text)]
+
+
+def pieces_told(text: str) -> list[tuple[str, str]]:
+    """The same, each after the text's own words for it: "bin" for a trash can."""
     words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
     others = deed_table().not_furniture.split()
-    found: list[str] = []
+    found: list[tuple[str, str]] = []
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
         if size and not (size == 1 and words[at] in others) and not (at == 0 and _is_a_deed(words)):
             name = " ".join(words[at : at + size])
             piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
-            found.append(deed_table().stands_on.get(piece, piece))
+            found.append((name, deed_table().stands_on.get(piece, piece)))
         at += size or 1
     return found
 

@@ -15,8 +15,8 @@ from motion_backend.language.minilm import MiniLM
 from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
-from planner_service.composition.caption_senses import is_shown, shows
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, pieces_in
+from planner_service.composition.caption_senses import contradicted, is_shown, shows
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, is_another, pieces_in
 from planner_service.composition.mood_captions import captions_of
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe
@@ -25,6 +25,7 @@ from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.things import things_called
 from scene_graphs.furniture import categories_of
 
 SURER: Final = 0.45
@@ -84,6 +85,10 @@ TOUCHES: Final = (
 """Captions of a hand that is laid on something, whatever it does there."""
 
 
+IN_HANDS: Final = ("phone", "piano", "controller", "typing", "writing", "eating", "drinking", "book", "music")
+"""Parts of captions in which hands are seen with a thing."""
+_PLAYS: Final = ("play", "practise", "practice", "strum", "tune", "perform", "pluck")
+"""Verbs of what is done with the instrument that was named last."""
 _THINGS: Final = re.compile(
     r"(?:the|an?|his|her|its|their|my|our|your|every|each|this|that|it|some\w*|no\w+|who\w*|one) ", re.IGNORECASE
 )
@@ -107,9 +112,19 @@ class DeedReader:
 
     classifier: BeatClassifier | None = None
     _known: dict[str, Likely] = field(default_factory=dict)
+    _fitting: dict[str, Likely] = field(default_factory=dict)
+    """Those of them without what a caption must not be played for."""
+    _nevers: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    _instruments: dict[str, str] = field(default_factory=dict)
+    """Of clauses that play something: what was named last that can be played."""
 
     def hear(self, read: Sequence[ReadBeat]) -> None:
         """Think about the clauses of beats as they follow each other, all at once."""
+        named = ""
+        for one in read:
+            named = next((word for word in one.clause.lemmas if word in things_called("instrument")), named)
+            if one.clause.verb in _PLAYS and named:
+                self._instruments[one.clause.text] = named
         told = [_WHEN.sub("", one.text) for one in read]  # with whose deeds they are
         before = (". ".join(told[max(place - BEFORE, 0) : place]) for place in range(len(told)))
         self._think({one.clause.text: pair for one, *pair in zip(read, told, before, strict=True)})
@@ -123,7 +138,26 @@ class DeedReader:
     def likely(self, clause: Clause) -> Likely | None:
         """What a clause is likely shown by; None without a classifier."""
         self._think({clause.text: (clause.text, "")})
-        return self._known.get(clause.text)
+        known = self._known.get(clause.text)
+        if known is not None and clause.text not in self._fitting:
+            never = self._never(clause)
+            others = IN_HANDS if never and self._misled(clause) else ()
+            kept = {one: p * _may_be(one, never, others, clause) for one, p in known.captions.items()} if never else {}
+            self._fitting[clause.text] = replace(known, captions=kept) if never else known
+        return self._fitting.get(clause.text)
+
+    def _misled(self, clause: Clause) -> bool:
+        """Whether what is likeliest to show a clause must not be played for it."""
+        known = self._known.get(clause.text)
+        return known is not None and any(part in known.best[1] for part in self._never(clause))
+
+    def _never(self, clause: Clause) -> tuple[str, ...]:
+        """Parts of captions that must not be played for a clause, nor for the instrument that is played in it."""
+        if clause.text not in self._nevers:
+            instrument = self._instruments.get(clause.text)
+            played = replace(clause, lemmas=(clause.verb, instrument)) if instrument else clause
+            self._nevers[clause.text] = tuple(dict.fromkeys((*contradicted(clause), *contradicted(played))))
+        return self._nevers[clause.text]
 
     def deed(self, clause: Clause, about: str = "") -> Deed | None:
         """The deed of a clause, see `deed_of`; None where nothing that a body does shows it."""
@@ -131,18 +165,25 @@ class DeedReader:
         if found is not None and likely is not None and found.skill in RISINGS:
             return replace(found, skill=_rising(found, likely))
         found = _in_particular(found, likely) if found is not None and likely is not None else found
-        if found is None or likely is None or found.named or found.skill is not Skill.TOUCH:
+        if found is None or found.named or found.skill is not Skill.TOUCH:
             return found
-        pieces = (*found.pieces, *likeliest_pieces(likely))
-        return replace(found, pieces=tuple(sorted(dict.fromkeys(pieces), key=lambda one: -at(likely, one))))
+        pieces = (*found.pieces, *(likeliest_pieces(likely) if likely is not None else ()))
+        bearing = [one for one in dict.fromkeys(pieces) if not is_another(clause, one)] or list(found.pieces)
+        return replace(found, pieces=tuple(sorted(bearing, key=lambda one: -at(likely, one) if likely else 0)))
 
     def _deed(self, clause: Clause, about: str) -> Deed | None:
-        told, likely = deed_of(clause, about), self.likely(clause)
+        told, likely, never = deed_of(clause, about), self.likely(clause), self._never(clause)
+        if told is not None and never:
+            told = _without(told, never)
+            if told is None or (told.row.captions and self._misled(clause)):
+                return told  # nothing else is played for what would be shown by its opposite
         if likely is None or (told is not None and told.row.why):
             return told
         skill, best = likely.best
         most = likely.captions[skill, best]
         known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
+        if told is not None and told.named and told.skill in RISINGS:
+            return told  # "gets up from his armchair", whatever else is told of it
         if likely.shown < UNSHOWABLE:
             return None
         if told is not None and told.row.captions and likely.shown < SHOWN:
@@ -173,8 +214,8 @@ class DeedReader:
             return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
         return one
 
-    def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe]) -> bool:
-        """Whether some keyframe shows a clause's deed, or they only stand for it."""
+    def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe], placed: bool = False) -> bool:
+        """Whether some keyframe shows a clause's deed, or they only stand for it; `placed` where the place is known."""
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
         if likely is None or not keyframes or deed.row.stands:
             return by_table
@@ -183,7 +224,7 @@ class DeedReader:
             return min(rises, likely.shown) > SURE  # from whatever: a bed or a chair
         said = any(shows(one.skill, one.caption, clause) for one in keyframes)
         least = SAID if said else SURE if by_table else SURELY
-        return max(shown(likely, clause, one) for one in keyframes) > least
+        return max(shown(likely, clause, one, placed) for one in keyframes) > least
 
     def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion, least: float = HARDLY) -> bool:
         """Whether a deed's captions are taken for what a clause tells less likely than `least`."""
@@ -209,11 +250,12 @@ class DeedReader:
         return [one for one in some if likely.of(skill, (one,)) >= LIKELIEST * most]
 
 
-def shown(likely: Likely, clause: Clause, keyframe: Keyframe) -> float:
-    """How likely a fair viewer takes a keyframe for what a clause tells."""
+def shown(likely: Likely, clause: Clause, keyframe: Keyframe, placed: bool = False) -> float:
+    """How likely a fair viewer takes a keyframe for what a clause tells; `placed` where it is told before."""
     there = 1.0
-    if keyframe.skill is Skill.TOUCH and not pieces_in(clause.text):
-        there = min(2 * at(likely, keyframe.piece[0]) / max(likely.pieces.values()), 1.0)
+    if keyframe.skill is Skill.TOUCH and not (placed or pieces_in(clause.text)):
+        most = max(share for piece, share in likely.pieces.items() if not is_another(clause, piece.replace("_", " ")))
+        there = min(2 * at(likely, keyframe.piece[0]) / most, 1.0)
     felt = 0.0 if keyframe.mood is Emotion.NEUTRAL else likely.moods.get(keyframe.mood, 0.0)
     return min(max(there * likely.captions.get((keyframe.skill, keyframe.caption), 0.0), felt), likely.shown)
 
@@ -224,6 +266,24 @@ def _whose(one: ReadBeat) -> str:
         return "a person"
     theirs = one.clause.verb and (one.clause.aside or _THINGS.match(one.text))
     return "a thing" if theirs else "nobody"
+
+
+def _may_be(caption: tuple[Skill, str], never: Sequence[str], others: Sequence[str], clause: Clause) -> bool:
+    """Whether a caption may be played where some must not be: nor others with something in the hands instead."""
+    if any(part in caption[1] for part in never):
+        return False
+    return shows(*caption, clause) or not any(part in caption[1] for part in others)
+
+
+def _without(deed: Deed | None, never: Sequence[str]) -> Deed | None:
+    """A deed without captions that must not be played for it; None where it has no others."""
+    if deed is None or not never:
+        return deed
+    own = (deed.row.captions, deed.row.seated, deed.row.lying)
+    kept = [tuple(one for one in some if not any(part in one for part in never)) for some in own]
+    if deed.row.captions and not kept[0]:
+        return None
+    return replace(deed, row=replace(deed.row, captions=kept[0], seated=kept[1], lying=kept[2]))
 
 
 def _in_particular(deed: Deed, likely: Likely) -> Deed:

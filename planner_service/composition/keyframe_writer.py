@@ -22,6 +22,7 @@ from planner_service.composition.deed_lexicon import (
     deed_table,
     listed_places,
     names_things,
+    pieces_in,
     room_of,
     typical_of,
     where,
@@ -29,6 +30,7 @@ from planner_service.composition.deed_lexicon import (
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
+from planner_service.composition.whereabouts import Whereabouts, is_held, is_worn
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -49,6 +51,8 @@ NOT_ACTED: Final = {
 """Why beats of these kinds are not acted."""
 SPOKEN_OF: Final = "it is only spoken of"
 UNSHOWN: Final = "none of the captions shows it"
+HELD: Final = "the hands are empty"
+"""Why what is only held, or is in somebody's own clothes, is not acted."""
 EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 """Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
@@ -96,10 +100,13 @@ class KeyframeWriter:
     """Beats that are not acted, with the reason."""
     deeds: dict[int, Deed] = field(default_factory=dict)
     """What is done for beats that are acted as deeds."""
+    linked: set[int] = field(default_factory=set)
+    """Beats of hands that are done where the thing was last."""
     moody: set[int] = field(default_factory=set)
     """Beats that a mood alone shows, in whatever is done in it."""
     parts: list[tuple[int, Part]] = field(default_factory=list)
     """Beats that are served by a part of a script."""
+    _whereabouts: Whereabouts = field(default_factory=Whereabouts)
     _resting: PlannedKeyframe | None = None
     _avoided: set[Skill] = field(default_factory=set)
     _about: str = ""
@@ -135,7 +142,9 @@ class KeyframeWriter:
     def _deed(self, clause: Clause) -> Deed | None:
         """What a clause does; who starts again does what was tried last, else done at rest last, else done first."""
         again = clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas)
-        if (again or _GOES_ON.match(clause.text)) and self.deeds:
+        if again and not self.deeds:
+            return None
+        if again or (_GOES_ON.match(clause.text) and self.deeds):
             done = list(self.deeds.values())
             return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return self.reader.deed(clause, self._about)
@@ -194,6 +203,8 @@ class KeyframeWriter:
         if self._resting is not None and only_stands_for(self._resting, read, deed, self.reader):
             self._show(index)  # nobody gets up for what would show no more
             return
+        if deed.skill is Skill.TOUCH and self._is_on_body(index, read):
+            return
         match deed.skill:
             case Skill.STANDUP | Skill.GETUP if not self.keyframes:
                 self._begin(index, deed, mood)
@@ -223,6 +234,18 @@ class KeyframeWriter:
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
                 self._rest(index, read, deed, mood, deed.skill, shown)
+
+    def _is_on_body(self, index: int, read: ReadBeat) -> bool:
+        """Whether what hands would do it to is held or worn already: nobody walks to it, and it is not seen."""
+        holds = is_held(read.clause) or (
+            read.clause.verb in ("hold", "clutch") and self._whereabouts.holds(read.clause)
+        )
+        worn = is_worn(read.clause) and not pieces_in(read.clause.text)
+        if not (holds or worn):
+            return False
+        self.why[index] = HELD
+        self.deeds.pop(index, None)
+        return True
 
     def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
         """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
@@ -277,6 +300,9 @@ class KeyframeWriter:
             if begins and self._rises:  # who "cannot sleep. He gets up" lies there when the story begins
                 self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
             self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
+            tables = [table for table, seats in deed_table().seats_at.items() if seats[0] == self._resting.furniture]
+            if tables and skill is Skill.SITDOWN:  # what is written there lies there
+                self._whereabouts.brought(read.clause, (self._resting.room, tables[0]))
 
     def _begin(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Lie or sit: who gets up has done so before."""
@@ -322,6 +348,8 @@ class KeyframeWriter:
             caption = others[0]
         self._put(index, Skill.LOCO, mood, caption, piece, read.room)
         self._resting = None
+        if deed.named and piece != "floor":
+            self._whereabouts.brought(read.clause, (read.room, piece))
 
     def _feel(self, index: int, beats: Sequence[ReadBeat]) -> None:
         """A mood alone: shown by what is done in it next, or was just done; else by a walk."""
@@ -341,6 +369,10 @@ class KeyframeWriter:
             self._show(index)
         elif beats[index].clause.verb in EXPRESSIONS and mood not in EXPRESSED:
             self.why[index] = UNSHOWN
+        elif last is not None and self._resting is not None:  # nobody gets up for a mood
+            caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
+            self._put(index, last.skill, mood, caption, last.furniture, last.room)
+            self._resting = self.keyframes[-1]
         else:
             self._put(index, Skill.LOCO, mood, walk_of(mood), "floor", beats[index].room)
             self._resting = None
@@ -350,7 +382,12 @@ class KeyframeWriter:
     ) -> bool:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
-        at = self.keyframes[-1].furniture if self.keyframes else "floor"
+        at = next((one.furniture for one in self.keyframes[:-3:-1] if not one.on_floor), "floor")
+        linked = self._whereabouts.of(read.clause, deed) if skill is Skill.TOUCH else None
+        if linked is not None and affords(linked[1], "touch") and self._has(linked[1]):
+            part, deed = None, replace(deed, pieces=(linked[1],), named=True)  # where the thing is
+            read = replace(read, room=linked[0] or read.room)
+            self.linked.add(index)
         if part is not None and at in deed.pieces and at != part.keyframes[-1].furniture:
             part = None  # nobody goes elsewhere for what is done where one is
         if part is not None and deed.named and not _is_at(part.keyframes[-1], deed):
@@ -362,6 +399,7 @@ class KeyframeWriter:
             and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
         ):
             self._take_part(index, part, read.room or part.script.room)
+            self._lay(read, skill)
             return True
         room, piece = self._piece(read, deed, skill)
         if not piece:
@@ -376,8 +414,16 @@ class KeyframeWriter:
                 return True
             caption = others[0]
         self._is_there(piece, room)
+        for here in self.keyframes[-1:]:  # where one is nobody walks to
+            room = here.room if here.furniture == piece != "floor" and None in (room, here.room) else room
         self._put(index, skill, mood, caption, piece, room)
+        self._lay(read, skill)
         return True
+
+    def _lay(self, read: ReadBeat, skill: Skill) -> None:
+        """Note where hands have just done something."""
+        if skill is Skill.TOUCH:
+            self._whereabouts.laid(read.clause, (self.keyframes[-1].room, self.keyframes[-1].furniture))
 
     def _take_part(self, index: int, part: Part, room: str | None) -> None:
         """The keyframes of a part of a script, without a walk to where one is."""
@@ -395,7 +441,7 @@ class KeyframeWriter:
         """Whether what a keyframe is done at is what the body sits on, or has just touched."""
         last = self.keyframes[-1] if self.keyframes else None
         there = last is not None and last.furniture == keyframe.furniture and last.room in (None, room)
-        return last is not None and there and last.skill is keyframe.skill is not Skill.LIEDOWN
+        return last is not None and there and last.skill is keyframe.skill
 
     def _is_there(self, piece: str, room: str | None) -> bool:
         """Whether the body has just walked to a piece; a walk to it in no certain room is then one in `room`."""
@@ -411,7 +457,7 @@ class KeyframeWriter:
         here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
         asked = dict.fromkeys((read.room, room_of(read.clause), here))
         rooms = [room for room in asked if room is not None and room in self._rooms]
-        near = [k.furniture for k in self.keyframes[:-3:-1] if not (deed.named or k.on_floor)]
+        near = [] if deed.named else [one.furniture for one in self._near()]
         last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
         last = [*last, *self._there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says
@@ -421,12 +467,24 @@ class KeyframeWriter:
             fit = (room for room in rooms if room in told or piece in usual[room][need])  # else where it usually is
             return next((room for room in fit if self._has(piece, room)), None), piece
         for room in rooms:
-            options = [*last, *deed.pieces, *usual[room][need]]
+            own = [
+                piece for piece in deed.pieces if need != "touch" and piece in usual[room][need]
+            ]  # no sofa in kitchens
+            options = [*last, *own, *deed.pieces, *usual[room][need]]
             if piece := next((one for one in options if affords(one, need) and self._has(one, room)), ""):
                 return room, piece
         general = [piece for those in usual.values() for piece in those[need]]
         options = [*last, *deed.pieces, *(() if deed.pieces else usual["living_room"][need]), *general]
         return None, next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
+
+    def _near(self) -> list[PlannedKeyframe]:
+        """What was last done at furniture, in the room that one is in."""
+        near: list[PlannedKeyframe] = []
+        for one in self.keyframes[:-3:-1]:
+            near += [] if one.on_floor else [one]
+            if one.skill is Skill.LOCO and one.on_floor and one.room is not None:
+                break  # gone to another room
+        return near
 
     def _there(self, deed: Deed) -> Sequence[str]:
         """Where one has just gone, and what is sat on there: "walks to the desk and sits down"."""

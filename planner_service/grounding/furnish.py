@@ -7,16 +7,18 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from motion_backend.motion import Skill
+from planner_service.composition.deed_lexicon import pieces_told
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
 from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
 from planner_service.grounding.seat_tables import rests, tables_of
 from planner_service.grounding.window_places import WINDOW, at_window, has_window
+from planner_service.scripts.acted_beats import AT_THE, IN_PLACE_OF
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.usable_furniture import Pull
 from scene_graphs.errors import UserError
-from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, display_name
+from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, categories_of, display_name
 from scene_graphs.graph.edit_distance import MAX_NODES, exact_distance
 from scene_graphs.graph.furniture_graph import FurnitureGraph, graph_from_layout, graph_from_uses, put_beside
 from scene_graphs.graph.merge import merge
@@ -79,6 +81,19 @@ class Furnished:
             keyframe = self.script.keyframes[index + 1]
         touches = keyframe.skill is Skill.TOUCH and at_window(keyframe.skill, self.script.said_of(keyframe))
         return touches and has_window(self.home)
+
+    def instead(self, index: int) -> str:
+        """What the hands of a keyframe are at in place of the piece that the theme names: "at the wardrobe in place of
+        the washing machine"; "" where they are at that, or the theme names none."""
+        keyframe, place = self.script.keyframes[index], self.places[index]
+        if keyframe.skill is not Skill.TOUCH or place.object_id is None or self._at_window(index):
+            return ""
+        category = canonical(self.home.object(place.object_id).category)
+        if category in categories_of(keyframe.piece[0]):
+            return ""
+        named = pieces_told(self.script.said_of(keyframe))
+        told = next((word for word, piece in named if piece == keyframe.piece[0]), "")
+        return f"{AT_THE} {display_name(category)}{IN_PLACE_OF}{told}" if told else ""
 
     def explain(self) -> list[str]:
         """One line a room: which, what stands for what, what is missing, what was moved."""
@@ -256,8 +271,9 @@ def _matches(unique: Sequence[Layout], chosen: Chosen, stand_ins: Sequence[Stand
         played = [match for given, match in chosen.values() if given is layout]
         first = played[0] if played else RoomMatch(layout.room_type, layout.id, 0, True, (), ())
         # A room of the user's may stand for several types: what is missed or replaced in any of them is said.
-        substitutions = tuple(dict.fromkeys(s for match in played for s in match.substitutions))
         served = {s.asked: s.given for s in stand_ins if s.room == number}
+        given = (s for match in played for s in match.substitutions if s[0] not in served)
+        substitutions = tuple(dict.fromkeys(given))
         substitutions += tuple((asked, given, "affordance") for asked, given in served.items())
         missing = tuple(dict.fromkeys(n for match in played for n in match.missing if n not in served))
         matches.append(replace(first, substitutions=substitutions, missing=missing))

@@ -17,7 +17,16 @@ from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place, can_stand
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.affordances import spots
-from scene_graphs.furniture import Furniture, canonical, class_of, display_name, group_of, is_known, is_minor
+from scene_graphs.furniture import (
+    Furniture,
+    canonical,
+    categories_of,
+    class_of,
+    display_name,
+    group_of,
+    is_known,
+    is_minor,
+)
 from scene_graphs.graph.furniture_graph import FurnitureGraph, needs_of, offers
 from scene_graphs.graph.script_objects import Grounding, Offers, ground_script
 from scene_graphs.home import Home
@@ -94,7 +103,13 @@ class Placing:
         met = (grounding.objects[node] for grounding in scripts if node in grounding.objects)
         need = NEEDS.get(keyframe.skill)
         fit = (chosen for chosen in met if need is None or need in self._offers(chosen))
+        fit = (chosen for chosen in fit if keyframe.skill is not Skill.TOUCH or not self._is_another(chosen, node))
         return next(fit, None) or self._stand_in(room, node)
+
+    def _is_another(self, object_id: str, node: Furniture) -> bool:
+        """Whether an object is a small thing of another kind: a bin is no picture, though both decorate."""
+        category = self.home.object(object_id).category
+        return is_minor(category) and canonical(category) not in categories_of(node.category)
 
     def _named(self, served: str) -> str:
         return served if served == FLOOR else display_name(self.home.object(served).category)
@@ -116,9 +131,19 @@ class Placing:
         if not needed or not fitting:
             return None
         taken = {chosen for (r, _), g in self.grounded.items() if r == room for chosen in g.objects.values()}
-        # A hand looks for something in storage or on a table sooner than on a seat.
-        kept = {placed.id: group_of(placed.category) in ("storage", "surface") for placed in fitting}
-        best = min(fitting, key=lambda p: (is_minor(p.category), not kept[p.id], p.id in taken, p.id))
+        # A hand does it where it does something else, at a table or in storage, sooner than at a seat.
+        used = {node.category for _, graph in self.uses[room] for node in graph}
+        order = {"surface": 0, "storage": 1}
+        best = min(
+            fitting,
+            key=lambda p: (
+                is_minor(p.category),
+                order.get(group_of(p.category), 2),
+                canonical(p.category) not in used,
+                p.id in taken,
+                p.id,
+            ),
+        )
         self.stand_ins[room, node] = best.id
         return best.id
 

@@ -31,7 +31,7 @@ def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) 
             rooms.append(keyframe.room)
         else:
             shares = shares_of(keyframe.piece[0], layouts, types, table)
-            stays = room is not None and shares.get(room, 0.0) >= USUAL
+            stays = room is not None and (shares.get(room, 0.0) >= USUAL or not any(shares.values()))
             rooms.append(room if stays else max(types, key=lambda name: shares[name]))
         room = rooms[-1] or room
     known = [name for name in rooms if name] or [types[0]]

@@ -232,7 +232,10 @@ class Maker:
             "end": first + len(motion),
             "reached": figures.reached,
             "reason": figures.reason,
-            "otherwise": [note.words for note in motion.notes],
+            "otherwise": [
+                *(note.words for note in motion.notes),
+                *filter(None, (story.stage.instead(action.keyframe),)),
+            ],
             "segments": [asdict(segment) for segment in segments_of(motion)],
         }
         made = Made(

@@ -242,7 +242,10 @@ def beats_of(story: Story) -> ActedBeats:
             reached=figure.reached,
             reason=figure.reason,
             seconds=figure.seconds,
-            otherwise=tuple(note.words for note in notes if note.keyframe == figure.keyframe),
+            otherwise=(
+                *(note.words for note in notes if note.keyframe == figure.keyframe),
+                *filter(None, (story.planned.stage.instead(figure.keyframe),)),
+            ),
         )
         for figure in story.figures
     ]

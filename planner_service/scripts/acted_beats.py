@@ -15,6 +15,9 @@ from scene_graphs.json_fields import Json
 UNDONE: Final = "left undone, as the theme asks"
 IN_ITS_PLACE: Final = "the body is seen doing something else in its place"
 """Why what is only stood for is not acted."""
+AT_THE: Final = "at the"
+IN_PLACE_OF: Final = " in place of the "
+"""Words of a note on hands that are at another piece than the theme names, before and after that."""
 LEGEND: Final = (
     f"acted: the body is seen doing it, with empty hands; something stands for it: {IN_ITS_PLACE}; "
     "not shown: words that the body does not show; left undone: the theme says it is not done"
@@ -141,7 +144,11 @@ class ActedBeats:
         return [
             f"{self.acted} of {self.asked} beats of your theme are acted{more}; {share}",
             *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
-            *(f"not acted as such, something stands for it: {one.beat.text}" for one in self.outcomes if one.stood_for),
+            *(
+                f"not acted as such, something stands for it: {one.beat.text}{one.why.removeprefix(IN_ITS_PLACE)}"
+                for one in self.outcomes
+                if one.stood_for
+            ),
             *(
                 f"not shown of “{one.beat.text}”: {'; '.join(one.unshown)}"
                 for one in self.outcomes
@@ -173,7 +180,10 @@ def acted_beats(beats: Sequence[Beat], shots: Sequence[Shot]) -> ActedBeats:
 def _outcome(beat: Beat, index: int, shots: Sequence[Shot]) -> Outcome:
     seen, why = _seen(beat, index, shots), _why(beat, index, shots)
     stood_for = seen.stood_for and not why
-    return Outcome(seen, IN_ITS_PLACE if stood_for else why, stood_for)
+    where = next((words for shot in shots if index in shot.beats for words in shot.otherwise
+                  if IN_PLACE_OF in words and _concerns(words, beat)), "")  # fmt: skip
+    place = f"{IN_ITS_PLACE}, {where}" if where else IN_ITS_PLACE
+    return Outcome(seen, place if stood_for else why, stood_for)
 
 
 def planned_beats(script: LongScript) -> ActedBeats:
@@ -199,7 +209,10 @@ def _seen(beat: Beat, index: int, shots: Sequence[Shot]) -> Beat:
 
 
 def _concerns(words: str, beat: Beat) -> bool:
-    """Whether a note is about what a beat says: who is only said to lie on a bed does so wherever the knees are."""
+    """Whether a note is about what a beat says: who is only said to lie on a bed does so wherever the knees are; and a
+    piece that something is done in place of must be named."""
+    if IN_PLACE_OF in words:
+        return re.search(rf"\b{re.escape(words.partition(IN_PLACE_OF)[2])}", beat.text, re.IGNORECASE) is not None
     return not (OF_LIMBS.search(words) and RESTS.match(beat.text))
 
 

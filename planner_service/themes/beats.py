@@ -11,10 +11,11 @@ from typing import Final
 from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
-from planner_service.themes.lexicon import is_known_word
+from planner_service.themes.lexicon import grammar, is_known_word, lemma_of
 from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
 from planner_service.themes.verb_group import NEARLY
 from scene_graphs.errors import UserError
@@ -63,6 +64,9 @@ EXPRESSIONS: Final = {
     for verb in verbs.split()
 }
 """Verbs that say how somebody feels who does it."""
+_LAUGHS: Final = ("laugh", "giggle", "chuckle", "cackle")
+_TEARS: Final = re.compile(r"\b(?:tears?|cr(?:y|ies|ied|ying)|weeps?|wept|weeping|aches?|hurts?)\b", re.IGNORECASE)
+"""Who laughs till these is happy."""
 _CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
 
 
@@ -149,8 +153,11 @@ def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
     if not sure and clause.subject:
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
-    if not sure and not who and (shown := EXPRESSIONS.get(clause.verb)):
+    laughs = clause.verb in _LAUGHS and _TEARS.search(clause.text)
+    if (laughs or not sure) and not who and (shown := EXPRESSIONS.get(clause.verb)):
         emotion, sure = shown, True
+    alone = {"nobody", "nothing", "none"} & set(clause.lemmas) and {"but", "only"} & set(clause.lemmas)
+    emotion = None if alone and not sure else emotion  # "finds nobody there, only a parcel"
     theirs = is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
     if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
@@ -193,6 +200,8 @@ def _kind(clause: Clause, who: str) -> BeatKind:
 def is_feeling(clause: Clause) -> bool:
     """Whether a clause says nothing but how somebody feels: "becomes very sad"; or is words without a verb."""
     words = theme_words()
+    if not clause.verb and names_a_thing(clause):  # "a birthday cake"
+        return False
     if not clause.verb:  # "a cold kitchen" hints at a mood and is none
         says_how = clause.text.split()[0].endswith("ed")  # "Bored stiff, …"
         return any(feeling.sure or says_how for feeling in feelings(clause.text))
@@ -202,6 +211,18 @@ def is_feeling(clause: Clause) -> bool:
     if head_of(clause.subject).lower() in words["body"]:  # "her heart is in her mouth"
         return bool(feelings(f"{clause.subject} {clause.text}"))
     return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
+
+
+def names_a_thing(clause: Clause) -> bool:
+    """Whether words without a verb are a thing with its article, and nothing more."""
+    words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
+    known = grammar()
+    return (
+        len(words) > 1
+        and words[0] in known.marks | known.numbers
+        and lemma_of(words[-1]) in things()
+        and known.prepositions.isdisjoint(words)
+    )
 
 
 def _refuse_foreign(text: str) -> None:

@@ -22,6 +22,7 @@ from scene_graphs.furniture import is_known
 
 _PRONOUN: Final = re.compile(r"\b(?:(?P<she>she|her|herself)|(?P<he>he|him|his|himself))\b", re.IGNORECASE)
 _SUBJECT: Final = re.compile(r"\b(?:(?P<she>she)|(?P<he>he))\b", re.IGNORECASE)
+_THEY: Final = re.compile(r"\b(?:they|their|themsel(?:f|ves))\b", re.IGNORECASE)
 _KINDS: Final = re.compile(
     r"^(?:\W*(?:an?|the|this|one|our|my|his|her|their|some|old|young|tired|little|lonely|happy|sad|elderly|busy|single)\s+)*(?:"
     r"(?P<she>woman|girl|lady|mother|mum|mom|grandmother|grandma|granny|widow|wife|daughter|sister|aunt|nun|actress"
@@ -57,9 +58,10 @@ def cast_by(theme: str, character: Character) -> Character:
     told = called(clauses, hero)
     mine = hero.lower() in _FIRST_PERSON
     name = _called_as(hero, told) or ("" if mine else _named_beside(theme, clauses, told))
-    own = pronouns_of(hero) or pronouns_of(f"the {head_of(hero)}") or _pronouns_of_names().get(name.lower()) or told
-    beside = "" if mine else _pronouns_in(theme, is_name(name))
-    pronouns = own or beside or default.pronouns
+    listed = _pronouns_of_names().get(name.lower(), "")
+    own = told or pronouns_of(hero) or pronouns_of(f"the {head_of(hero)}") or listed.replace("they", "")
+    beside = "" if mine or (listed and _THEY.search(theme)) else _pronouns_in(theme, is_name(name))
+    pronouns = own or beside or listed or default.pronouns
     return replace(character, name=name or default.name, pronouns=pronouns)
 
 
@@ -222,7 +224,21 @@ def called(clauses: Sequence[Clause], hero: str) -> str:
     most = _told_most(clauses)
     if hero.lower() in _FIRST_PERSON and _deeds_by(clauses, ("he", "she"))[most] <= _deeds_by(clauses, ("i",))["i"]:
         return ""
+    if most and _is_listed(hero) and not any(_may_be(one.subject, hero, most) for one in clauses):
+        return most  # what a theme says tells more than a list of names
     return pronouns_of(hero) or most
+
+
+def _is_listed(hero: str) -> bool:
+    """Whether it is a mere name that a list has."""
+    return hero.lower() in _pronouns_of_names()
+
+
+def _may_be(subject: str, hero: str, pronoun: str) -> bool:
+    """Whether a subject is somebody else whom a pronoun may mean, or the other pronoun."""
+    if subject.lower() in ("he", "she"):
+        return subject.lower() != pronoun
+    return bool(subject) and subject != hero and is_person(subject) and pronouns_of(subject) in ("", pronoun)
 
 
 def _heroic(clause: Clause, pronoun: str) -> float:

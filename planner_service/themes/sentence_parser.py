@@ -25,7 +25,7 @@ from planner_service.themes.asides import (
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import FLOATING, Token, verb_place
+from planner_service.themes.verb_finder import FLOATING, Token, has_verb, verb_place
 from planner_service.themes.verb_group import NEARLY, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
@@ -43,6 +43,25 @@ _IDLE: Final = frozenset(("do", "be", "have", "lose", "waste", "take", "make", "
 _FEWEST_DENYING: Final = 2
 _PARTICLES: Final = frozenset(("on", "off", "down", "up", "around", "there", "back"))
 _BULLET: Final = re.compile(r"(?:^\s*(?:\d{1,2}[.)]|[-*•])|(?<=[.!?;:] )\d{1,2}[.)])\s+", re.MULTILINE)
+_HEADING: Final = re.compile(
+    r"(?:^|(?<=[.!?] ))(?:\w+(?:['’]s)? ){0,3}(?:chores|routine|errands|tasks|plan|plans|schedule|to-?do(?: list)?"
+    r"|list|diary|programme|agenda|chapter \w+|act \w+|scene \w+|part \w+|day \w+"
+    r"|(?:mon|tues|wednes|thurs|fri|satur|sun)day(?: (?:morning|afternoon|evening|night))?"
+    r"|morning|evening|afternoon|night|weekend): ",
+    re.IGNORECASE | re.MULTILINE,
+)
+"""What stands over a text, and is nothing that happens: "Saturday chores: …"."""
+_TIME: Final = re.compile(
+    r"^(?:(?:about|nearly|almost|some|just|only) )?(?:\d+|an?|half an|one|two|three|four|five|six|seven|eight|nine|ten"
+    r"|a few|several|many|a couple of) (?:seconds?|minutes?|hours?|days?|weeks?|months?|years?|nights?) "
+    r"(?:into [^,.;]{1,60}|(?:after|before|from|past) (?:the|an?|his|her|their|my) (?:\w+ )?\w+), (?=\w)",
+    re.IGNORECASE,
+)
+"""When it is: "Two hours into the power cut, Mei …"."""
+_WHAT_IT_IS: Final = re.compile(
+    r"(?<=\w):\s+((?:an?|the|his|her|their|my|some|one|two|three) [\w'’ -]{1,40})(?=\s*[.!?]|\s*$)", re.MULTILINE
+)
+"""What was meant before is named: "unwraps it: a birthday cake"."""
 _DAYTIMES: Final = frozenset(
     (
         "dusk",
@@ -170,8 +189,17 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
 
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
-    parts = [part for line in _SEMI.split(_BULLET.sub("", text)) if line.strip() for part in _segments(line)]
+    text = _HEADING.sub("", _BULLET.sub("", text)) or text
+    text = _WHAT_IT_IS.sub(_named_after, text)
+    parts = [part for line in _SEMI.split(text) if line.strip() for part in _segments(line)]
+    parts = [_TIME.sub("", part) for part in parts]
     return [part.strip(' \t.!?,;:-–—"“”') for part in parts if re.search(r"\w", part)]
+
+
+def _named_after(found: re.Match[str]) -> str:
+    """What stands after a colon, after a comma where it is no clause and follows one."""
+    before = re.split(r"[.!?;:\n]", found.string[: found.start()])[-1]
+    return f", {found[1]}" if has_verb(before) and not has_verb(found[1]) else found[0]
 
 
 def _segments(line: str) -> list[str]:
@@ -277,10 +305,10 @@ def _does_none(words: Sequence[Token]) -> bool:
     if len(words) < _FEWEST_DENYING or verb_of(words[0].low) in _IDLE:
         return False
     rest = [token.low for token in words[1:]]
+    if {"but", "only", "except", "save"} & set(rest[1:]):
+        return False  # "finds nobody there, only a parcel"
     none = rest[0] in ("nothing", "nobody", "none", "neither") or rest[:2] == ["no", "one"]
-    return (none and rest[1:2] != ["but"] and rest[1:3] != ["in", "particular"]) or (
-        rest[0] == "no" and rest[1:2] != ["longer"]
-    )
+    return (none and rest[1:3] != ["in", "particular"]) or (rest[0] == "no" and rest[1:2] != ["longer"])
 
 
 def _is_hindered(joint: str, lead: Sequence[Token], verb: Token) -> bool:

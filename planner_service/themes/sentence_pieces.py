@@ -7,10 +7,19 @@ from dataclasses import dataclass, field, replace
 from typing import Final
 
 from planner_service.themes.asides import TELLING, THAT
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, past, verb_of
+from planner_service.themes.lexicon import (
+    grammar,
+    is_adjective,
+    is_noun,
+    is_third_person,
+    kinds_of,
+    lemma_of,
+    past,
+    verb_of,
+)
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
-from planner_service.themes.verb_finder import Token, is_adverb, plain, tokens_of, verb_place
+from planner_service.themes.verb_finder import Token, is_adverb, names, plain, tokens_of, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
@@ -60,7 +69,9 @@ def pieces_of(sentence: str) -> list[Piece]:
             if token.low in grammar().with_gerund:
                 current.append(token)
         else:
-            led = token.low in HEROES and is_led(joint, current) and current[-1:] and current[-1].low not in THAT
+            named = _is_named_doer(tokens, place) and current[-1:] and current[-1].low not in grammar().prepositions
+            led = (token.low in HEROES or named) and is_led(joint, current)
+            led = led and current[-1:] and current[-1].low not in THAT
             if led and verb_place(current) is not None:
                 cut.append(Piece(joint, tuple(current), source))
                 joint, current = ",", []
@@ -70,6 +81,17 @@ def pieces_of(sentence: str) -> list[Piece]:
     if len(tokens) == 1 and lemma_of(tokens[0].low) in things():  # "Shoes. Keys?"
         return [replace(cut[0], verbless=True)]
     return _without_relatives(_whole(cut))
+
+
+def _is_named_doer(tokens: Sequence[Token], place: int) -> bool:
+    """Whether a name stands there with what its bearer does: "before he left | Tomas ironed a shirt"."""
+    name, after = tokens[place], tokens[place + 1] if place + 1 < len(tokens) else None
+    if not name.text[:1].isupper() or after is None or name.low.endswith("."):
+        return False
+    titled = place > 0 and tokens[place - 1].text[:1].isupper() and tokens[place - 1].low != "i"
+    base = verb_of(after.low)
+    finite = bool(base) and (is_third_person(after.low) or past(base) == after.low)
+    return finite and not titled and (name.low in names() or not kinds_of(name.low))
 
 
 def is_led(joint: str, current: Sequence[Token]) -> bool:
@@ -83,6 +105,10 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     low = tokens[place].low
     rest = tokens[place + 1 :]
     if place and tokens[place - 1].low in _NO_JOINTS.get(low, ()):
+        return False
+    if low == "but" and place and tokens[place - 1].low in ("nothing", "nobody", "none"):
+        return False  # "finds nothing but a biscuit"
+    if low == "until" and _is_of_laughing(tokens[:place], rest):
         return False
     ahead = rest[0].low if rest else ""
     if low == "and" and place and (tokens[place - 1].low, ahead) in _PAIRS:
@@ -110,6 +136,12 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
     if low in ("after", "before", "until"):
         return bool(rest) and (_starts_gerund(rest) or rest[0].low in grammar().subjects or _clause_follows(rest))
     return True
+
+
+def _is_of_laughing(before: Sequence[Token], rest: Sequence[Token]) -> bool:
+    """Whether it only tells how much somebody laughs: "laughs | until she cries"."""
+    laughs = any(lemma_of(token.low) in ("laugh", "giggle", "chuckle") for token in before[-4:])
+    return laughs and any(lemma_of(token.low) in ("cry", "weep", "ache", "hurt", "tear") for token in rest[1:4])
 
 
 def _may_end(joint: str, cut: Sequence[Piece], current: Sequence[Token]) -> bool:

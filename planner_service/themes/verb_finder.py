@@ -43,6 +43,7 @@ _LONG: Final = (
     (r"(so (?:\w+ ){1,6}?)that (?=(?:i|he|she|they|we)\b)", r"\1, so "),
     ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"),
     ("at (?:long )?last|in the end", "finally"),
+    (r"(?:(?<=and )|(?<=then )|(?<=, ))at the (?:very )?end,?(?= \w)(?! of)", "finally"),
     (",? of course", ""),
     (r"(?:go|goes|went|come|comes|came) and (?=\w)", ""),
     ("not until(?=.* (?:did|does|do) )", "only after"),
@@ -135,13 +136,14 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
 
 def _opens_with_name(tokens: Sequence[Token]) -> bool:
     """Whether a name opens the words before what its bearer does, though it may be a verb too: "Peter stands up"."""
-    if len(tokens) < _FEWEST_SAYING or not tokens[0].text[:1].isupper() or tokens[0].low not in _names():
+    if len(tokens) < _FEWEST_SAYING or not tokens[0].text[:1].isupper() or tokens[0].low not in names():
         return False
     return is_third_person(tokens[1].low)
 
 
 @cache
-def _names() -> frozenset[str]:
+def names() -> frozenset[str]:
+    """First names."""
     words = theme_words()
     return words["names_she"] | words["names_he"] | words["names_they"]
 

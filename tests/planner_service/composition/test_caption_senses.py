@@ -8,7 +8,7 @@ from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
-from planner_service.composition.caption_senses import SenseTable, shows
+from planner_service.composition.caption_senses import SenseTable, contradicted, shows
 from planner_service.composition.compose import compose
 from planner_service.scripts.acted_beats import ActedBeats, planned_beats
 from planner_service.scripts.built_in_scripts import built_in
@@ -80,3 +80,33 @@ def planned(theme: str) -> ActedBeats:
 @cache
 def library() -> ScriptLibrary:
     return ScriptLibrary(built_in(), Features(HashingEncoder()))
+
+
+def test_every_part_of_a_contradiction_is_part_of_a_caption() -> None:
+    known: SenseTable = read_table("planner_service", "caption_senses.toml", SenseTable)
+    there = [caption for some in captions().values() for caption in some]
+    for one in known.contradiction:
+        assert all(any(part in caption for caption in there) for part in one.captions), one
+
+
+@for_each(
+    ("text", "caption", "never"),
+    [
+        ("She lets it ring.", "sitting upright, phone at the right ear", True),
+        ("She checks her phone.", "walk while talking on the phone with the left hand", True),
+        ("She answers the phone.", "sitting upright, phone at the right ear", False),
+        ("She plays the violin.", "playing the piano, both hands on the keys", True),
+        ("She plays the piano.", "playing the piano, both hands on the keys", False),
+        ("She plays solitaire.", "playing a game, controller held in both hands", True),
+        ("She plays a video game.", "playing a game, controller held in both hands", False),
+        ("She laughs.", "supporting head with hands, head bowed", True),
+        ("She cries.", "supporting head with hands, head bowed", False),
+        ("She sits on the sofa.", "typing, both hands on the keyboard", True),
+        ("She types on the sofa.", "typing, both hands on the keyboard", False),
+    ],
+)
+def test_no_caption_is_played_for_the_opposite_or_for_another_thing_in_the_hands(
+    text: str, caption: str, never: bool
+) -> None:
+    (clause,) = clauses_of_text(text)
+    assert any(part in caption for part in contradicted(clause)) == never

@@ -223,3 +223,16 @@ def test_who_writes_is_sat_where_a_table_stands_beside_the_chair(caption: str, t
     asked = {class_of(node.category) for graph in found.graphs.values() for node in graph}
     assert asked == {"seat"} | tables
     assert not any(match.missing for match in found.matches)
+
+
+def test_hands_at_another_piece_than_is_named_are_told_and_a_bin_is_no_picture() -> None:
+    keyframe = PlannedKeyframe(
+        skill=Skill.TOUCH, caption="touch medium height", furniture="trash can", room="bedroom", beat=0
+    )
+    for text, told in (("throws it in the bin", "bin"), ("throws it away", "")):
+        asked = LongScript(theme=text, beats=(Beat(text=text),), short_scripts=(), keyframes=(keyframe,))
+        found = furnish(asked, index())
+        given, _ = found.names[0]
+        assert given not in ("picture", "trash can")
+        assert found.instead(0) == (f"at the {given} in place of the {told}" if told else "")
+    assert not furnish(DAY, index()).instead(1), "a wardrobe is asked for and there"

@@ -166,3 +166,15 @@ def test_a_plan_is_judged_as_if_the_body_reached_everything() -> None:
     keyframe = PlannedKeyframe(skill=Skill.SITDOWN, caption="sitting still", furniture="sofa", beat=1)
     script = LongScript(theme="t", beats=(SITS, READS), short_scripts=(), keyframes=(keyframe,))
     assert [one.acted for one in planned_beats(script).outcomes] == [False, True]
+
+
+def test_hands_at_another_piece_than_a_beat_names_only_stand_for_it() -> None:
+    words = "at the wardrobe in place of the washing machine"
+    beats = [Beat(text="loads the washing machine"), Beat(text="hums")]
+    found = acted_beats(beats, [shot(0, True, otherwise=(words,)), shot(1, True, otherwise=(words,))])
+    first, second = found.outcomes
+    assert (first.acted, first.stood_for, second.acted) == (False, True, True)
+    assert first.why.endswith(words)
+    assert any(words in line for line in found.lines())
+    there = acted_beats(beats[:1], [shot(0, True, otherwise=(words,)), shot(0, True)])
+    assert there.acted == 1, "it is seen at the right piece as well"

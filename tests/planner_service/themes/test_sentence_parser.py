@@ -268,3 +268,29 @@ def test_who_does_it_lasts_to_the_end_of_the_sentence_but_not_who_does_it_meanwh
         ("sing", "Her brother"), ("dance", "Her brother"), ("read", "she"),
         ("come", "guests"), ("cook", "She"), ("yawn", "She"),
     ]  # fmt: skip
+
+
+@for_each(
+    ("theme", "clauses"),
+    [
+        ("Before he left Tomas ironed his shirt.", ["ironed his shirt", "left"]),
+        ("After she came home Lucy fed the cat.", ["came home", "fed the cat"]),
+        ("Saturday chores: Marta strips the bed.", ["strips the bed"]),
+        ("Two hours into the power cut, Mei reads.", ["reads"]),
+        ("He starts over, and at the end bows to a crowd.", ["starts over", "bows to a crowd"]),
+        ("She laughs until she cries.", ["laughs until she cries"]),
+        ("She unwraps it: a birthday cake.", ["unwraps it, a birthday cake"]),
+        ("She waits until he cries.", ["waits", "cries"]),
+    ],
+)
+def test_a_clause_ends_where_somebody_else_is_named_and_headings_and_times_are_none(
+    theme: str, clauses: list[str]
+) -> None:
+    assert said(theme) == clauses
+
+
+@for_each("words", ["nobody there, only a parcel", "nothing but a biscuit", "no one except the cat"])
+def test_who_finds_nothing_but_one_thing_finds_that(words: str) -> None:
+    assert not clauses_of_text(f"She finds {words}.")[0].denied
+    assert not any(one.denied for one in clauses_of_text(f"She looks around and finds {words}."))
+    assert clauses_of_text("She finds nobody there.")[0].denied

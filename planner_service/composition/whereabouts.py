@@ -1,0 +1,119 @@
+"""Where the things of a story are: where hands were laid on them last, and where they were taken from."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import Final
+
+from planner_service.composition.deed_lexicon import Deed, object_of
+from planner_service.themes.sentence_parser import Clause
+from scene_graphs.furniture import class_of
+
+Spot = tuple[str | None, str]
+"""Room, where it is known, and furniture word."""
+_MEANT: Final = frozenset(("it", "them", "one"))
+"""Words for what was named before."""
+_TAKES: Final = frozenset(
+    [
+        "pick",
+        "take",
+        "grab",
+        "get",
+        "fetch",
+        "lift",
+        "snatch",
+        "seize",
+        "collect",
+        "gather",
+        "find",
+        "pull",
+        "remove",
+        "hold",
+        "clutch",
+        "carry",
+    ]
+)
+"""What is so is in the hands from then on."""
+_PUTS: Final = frozenset(
+    ["put", "set", "lay", "place", "drop", "throw", "toss", "fling", "chuck", "hang", "leave", "rest", "stack"]
+)
+_OPENS: Final = frozenset(["open", "unwrap", "unlock", "unpack", "unzip", "untie", "tear"])
+"""Things are taken out of what is so."""
+_SUPPORTS: Final = frozenset(("table", "closet", "shelf", "side", "media"))
+"""Classes of furniture that only bear or keep a thing: what is done there may be done at another of them."""
+_HELD: Final = re.compile(
+    r"(?:holding|clutching|hugging|cradling|gripping|grasping|carrying|wearing|still holding)\b", re.IGNORECASE
+)
+_WORN: Final = re.compile(
+    r"\b(?:in|into|from|out of|inside) (?:(?:his|her|their|my|the|a|each|one) )?(?:\w+ ){0,2}pockets?\b", re.IGNORECASE
+)
+
+
+def is_held(clause: Clause) -> bool:
+    """Whether a clause only tells what is in the hands meanwhile: "…, holding the picture"; nobody walks to it."""
+    return bool(_HELD.match(clause.text))
+
+
+def is_worn(clause: Clause) -> bool:
+    """Whether hands do it in somebody's own clothes: "found them in his pocket"."""
+    return bool(_WORN.search(clause.text))
+
+
+@dataclass
+class Whereabouts:
+    """What is known of the places of things, as a story goes on."""
+
+    _spots: dict[str, list[Spot]] = field(default_factory=dict)
+    """By noun, every place where it was, in order."""
+    _held: set[str] = field(default_factory=set)
+    _named: str = ""
+    """What was named last."""
+    _opened: Spot | None = None
+    """Where something has just been opened."""
+
+    def laid(self, clause: Clause, spot: Spot) -> None:
+        """Hands do a clause's deed at a place."""
+        noun = self._thing(clause)
+        self._opened = spot if clause.verb in _OPENS else self._opened if self._comes_out(clause) else None
+        if not noun:
+            return
+        self._named = noun
+        spots = self._spots.setdefault(noun, [])
+        spots += [] if spots[-1:] == [spot] else [spot]
+        (self._held.add if clause.verb in _TAKES else self._held.discard)(noun)
+
+    def brought(self, clause: Clause, spot: Spot) -> None:
+        """A thing is carried somewhere."""
+        if noun := self._thing(clause):
+            self._named = noun
+            self._spots.setdefault(noun, []).append(spot)
+            self._held.discard(noun)
+
+    def holds(self, clause: Clause) -> bool:
+        """Whether what a clause is about is in the hands."""
+        return self._thing(clause) in self._held
+
+    def of(self, clause: Clause, deed: Deed) -> Spot | None:
+        """Where the thing is that hands do a deed to: where it was last, where it came from for "puts it back"; None
+        where that is unknown, or the deed has a place of its own."""
+        if deed.named or (deed.pieces and class_of(deed.pieces[0]) not in _SUPPORTS):
+            return None
+        if self._comes_out(clause):
+            return self._opened
+        noun = self._thing(clause)
+        spots = self._spots.get(noun)
+        if not spots:
+            return None
+        if "back" in clause.lemmas or clause.verb in ("return", "replace"):
+            return spots[0]
+        return None if noun in self._held or clause.verb in _PUTS else spots[-1]
+
+    def _thing(self, clause: Clause) -> str:
+        """What a clause's deed is done to."""
+        meant = self._named if _MEANT & set(clause.lemmas[1:4]) else ""
+        return meant or object_of(clause)
+
+    def _comes_out(self, clause: Clause) -> bool:
+        """Whether a thing is taken out of what was opened just before."""
+        return self._opened is not None and clause.verb in _TAKES and clause.lemmas[1:2] == ("out",)
