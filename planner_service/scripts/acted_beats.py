@@ -107,6 +107,8 @@ class ActedBeats:
     """One a beat, in order."""
     spare_share: float
     """Share of the screen time that serves no beat, 0 to 1; 0 while nothing has been moved."""
+    other_share: float = 0.0
+    """Share of the screen time that shows no acted beat: what stands for others is part of it."""
 
     @property
     def asked(self) -> int:
@@ -138,7 +140,7 @@ class ActedBeats:
         something is not acted; none without beats."""
         if not self.outcomes:
             return []
-        share = f"{self.spare_share:.0%} of the screen time serves none of them"
+        share = f"{self.other_share:.0%} of the screen time shows none of these"
         plain = all(one.acted and not one.beat.unshown for one in self.outcomes)
         more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [
@@ -166,15 +168,18 @@ class ActedBeats:
             "beats_acted": self.acted,
             "beats_stood_for": self.stood_for,
             "screen_time_without_beat": round(self.spare_share, 4) if self.outcomes else None,
+            "screen_time_not_acted": round(self.other_share, 4) if self.outcomes else None,
         }
 
 
 def acted_beats(beats: Sequence[Beat], shots: Sequence[Shot]) -> ActedBeats:
     """What became of the beats by the keyframes that there are, moved or still to be moved."""
     whole = sum(shot.seconds for shot in shots)
+    outcomes = tuple(_outcome(beat, index, shots) for index, beat in enumerate(beats))
+    acted = {index for index, one in enumerate(outcomes) if one.acted}
     spare = sum(shot.seconds for shot in shots if not shot.beats)
-    outcomes = (_outcome(beat, index, shots) for index, beat in enumerate(beats))
-    return ActedBeats(tuple(outcomes), spare / whole if whole else 0.0)
+    other = sum(shot.seconds for shot in shots if acted.isdisjoint(shot.beats))
+    return ActedBeats(outcomes, spare / whole if whole else 0.0, other / whole if whole else 0.0)
 
 
 def _outcome(beat: Beat, index: int, shots: Sequence[Shot]) -> Outcome:

@@ -106,7 +106,7 @@ export interface Report {
   readonly backend: string;
   readonly physics_mode: string;
   /** Share of the film in which no beat of the theme is acted, 0 to 1; null where there is no theme. */
-  readonly screen_time_without_beat: number | null;
+  readonly screen_time_not_acted: number | null;
   readonly motion: {
     readonly reached: number;
     readonly keyframes: number;

@@ -32,9 +32,9 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
   const { report } = story;
   if (!report) return false;
   const { motion } = report;
-  const spare = report.screen_time_without_beat;
+  const other = report.screen_time_not_acted;
   const figures: [string, string][] = [
-    ...(spare === null ? [] : ([[percent(spare), "of the film serves no beat of your theme"]] as [string, string][])),
+    ...(other === null ? [] : ([[percent(other), "of the film shows none of the beats that are acted"]] as [string, string][])),
     [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
     ...(motion.contact_error === null ? [] : ([[centimetres(motion.contact_error), "from where hands, seat and back should touch, on average"]] as [string, string][])),
     [centimetres(motion.pen_mean), `inside furniture on average; ${percent(motion.pen_share)} of the frames touch any`],

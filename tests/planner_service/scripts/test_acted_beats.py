@@ -45,7 +45,7 @@ def test_every_beat_is_acted_or_there_is_a_reason_and_shares_are_shares(beats: l
     assert all(one.acted + one.stood_for <= 1 for one in found.outcomes)
     assert found.acted + found.stood_for + len(found.missing) == found.asked
     assert found.asked + len(found.undone) == len(beats)
-    assert 0 <= found.spare_share <= 1
+    assert 0 <= found.spare_share <= found.other_share <= 1
     assert not any(one.acted for one in found.undone)
     assert all(one.why == one.beat.why for one in found.outcomes if one.beat.why)
     rows = found.to_dict()["beats"]
@@ -139,7 +139,7 @@ def test_one_keyframe_may_serve_several_beats() -> None:
 def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() -> None:
     found = acted_beats([SITS, READS, NO_SUPPER], [shot(0, seconds=3.0), shot(None, seconds=1.0)])
     assert found.lines() == [
-        "1 of 2 beats of your theme are acted; 25% of the screen time serves none of them",
+        "1 of 2 beats of your theme are acted; 25% of the screen time shows none of these",
         "not acted: reads (no keyframe is left that shows it)",
         "left undone, as asked: eats no supper",
         LEGEND,
@@ -149,6 +149,12 @@ def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() 
     assert [(one["text"], one["acted"]) for one in told["beats"]] == [
         ("sits down", True), ("reads", False), ("eats no supper", False),
     ]  # fmt: skip
+
+
+def test_time_that_shows_what_only_stands_for_a_beat_is_no_time_of_an_acted_one() -> None:
+    spins = Beat(text="conducts an orchestra", unshown=("conducts an orchestra",))
+    found = acted_beats([SITS, spins], [shot(0, seconds=3.0), shot(1, seconds=1.0)])
+    assert (found.spare_share, found.other_share) == (0.0, 0.25)
 
 
 def test_without_a_theme_nothing_is_said() -> None:
