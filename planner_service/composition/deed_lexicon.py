@@ -217,7 +217,7 @@ def listed_places(clause: Clause) -> list[str]:
     begins = [part.split()[0].lower() for part in parts[1:]]
     led = all(word in _PLACED for word in begins)
     bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split()[2:])
-    bare = bare and re.search(r"\b(?:and|or)\b", clause.text) is not None  # "opens the box, a scarf" names what it is
+    bare = bare and not re.search(r"^[^,]+, an? [^,]+$", clause.text)  # "opens the box, a scarf" names what it is
     known = [piece for some in places for piece in some if affords(piece, "touch")]
     return list(dict.fromkeys(known)) if (led or bare) and len(set(known)) > 1 and len(known) == len(parts) else []
 
