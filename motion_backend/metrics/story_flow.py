@@ -45,7 +45,7 @@ class Seam:
     before: Skill
     after: Skill
     walking: bool
-    """Between two walks that both lead somewhere."""
+    """Between two walks that both lead somewhere, the first of which is not to stand about where it comes to."""
     speed: float
     """Of the pelvis over the floor at the seam, m/s."""
     slowest: float
@@ -79,7 +79,7 @@ def seams(body: Kinematics, actions: Sequence[Action], spans: Sequence[Span]) ->
             frame=start,
             before=actions[index].skill,
             after=actions[index + 1].skill,
-            walking=leads[index] and leads[index + 1],
+            walking=leads[index] and leads[index + 1] and not actions[index].stands,
             speed=float(speed[start]),
             slowest=float(speed[max(start - around, 0) : start + around].min()),
         )

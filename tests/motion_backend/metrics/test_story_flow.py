@@ -55,6 +55,8 @@ def test_a_seam_is_a_walking_one_only_between_two_walks_that_lead_somewhere() ->
     assert [one.walking for one in seams(body, [WALK, WALK, WALK], spans)] == [True, True]
     assert [one.walking for one in seams(body, [WALK, STAY, WALK], spans)] == [False, False]
     assert [one.walking for one in seams(body, [WALK, sit, WALK], spans)] == [False, False]
+    looking_out = replace(WALK, stands=2.5)
+    assert [one.walking for one in seams(body, [WALK, looking_out, WALK], spans)] == [True, False]
     nowhere = Kinematics.of(going([0.5, 0.5, 0.1, 0.1, 0.1, 0.1]))
     assert [one.walking for one in seams(nowhere, [WALK, WALK, WALK], spans)] == [False, False]
 
