@@ -102,7 +102,7 @@ def page(example: Example, planned: Planned) -> str:
         "",
         f"![{planned.told.title}, acted]({example.file}.webp)",
         "",
-        planned.told.text,
+        planned.told.marked(lambda words: f"*{words}*"),
         "",
         "---",
         "",

@@ -467,7 +467,7 @@ class KeyframeWriter:
             fit = (room for room in rooms if room in told or piece in usual[room][need])  # else where it usually is
             return next((room for room in fit if self._has(piece, room)), None), piece
         for room in rooms:
-            own = [one for one in deed.pieces if need != "touch" and one in usual[room][need]]  # no sofa in kitchens
+            own = [one for one in deed.pieces if need == "sit" and one in usual[room][need]]  # no sofa in kitchens
             options = [*last, *own, *deed.pieces, *usual[room][need]]
             if piece := next((one for one in options if affords(one, need) and self._has(one, room)), ""):
                 return room, piece

@@ -17,11 +17,11 @@ from motion_backend.motion import RISINGS, Character, Skill
 from planner_service.narration.keyframe_phrases import RESTS, Places, Variety, Wording
 from planner_service.narration.keyframe_sentences import sentences
 from planner_service.narration.narrative_voice import Voice
-from planner_service.narration.retelling import Retelling, Stretch, retell
+from planner_service.narration.retold_theme import Retelling, Stretch, retell
 from planner_service.narration.story_words import story_words, title_of
 from planner_service.narration.tense import bases, form_of
 from planner_service.narration.told import Told, Words, page
-from planner_service.scripts.acted_beats import connects
+from planner_service.scripts.acted_beats import connects, planned_beats
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.furniture import class_of, display_name, is_known
 
@@ -86,10 +86,14 @@ class _Teller:
                 end = self.told.end_of(stretch)
                 besides.setdefault(end, []).append([(index, self.script.keyframes[index]) for index in own])
                 waiting = []
+            elif beat is None:
+                end = self.told.end_of(self.of[last]) if last is not None else self.told.ends[-1]
+                besides.setdefault(end, []).append([(index, self.script.keyframes[index]) for index in own])
+                waiting = []
             elif stretch is None and last is None:
                 waiting = own
             else:
-                last = last if stretch is None or beat is None else beat
+                last = last if stretch is None else beat
                 shown.setdefault(last, []).extend(own)  # type: ignore[arg-type]
                 waiting = []
                 if stretch is not None:
@@ -127,7 +131,9 @@ class _Teller:
             return
         sits = first.skill is Skill.SITDOWN
         down = f"{'sat' if sits else 'lay'} down {self.wording.on(index, first)}"
-        verb.before += f"{('sat up' if sits else 'lay back') if there else down} and "
+        follows = "".join(token.text for token in self.told.tokens[stretch.end :])
+        joint = "," if re.match(r",?\s*(?:and|then)\b|,", follows) else " and"  # "sat down, ate and went to bed"
+        verb.before += f"{('sat up' if sits else 'lay back') if there else down}{joint} "
 
     def _keyframes(self, shown: Sequence[tuple[Stretch, tuple[int, ...]]]) -> dict[int, tuple[int, ...]]:
         """By token the keyframes it tells: stretches that tell them in another order are told as one."""
@@ -142,10 +148,11 @@ class _Teller:
 
     def _thoughts(self) -> set[int]:
         """Tokens of what the body is not seen doing."""
+        outcomes = planned_beats(self.script).outcomes
         found = {at for run in self.told.asides() for at in run}
         for stretch in self.told.stretches:
             beat = self.script.beats[stretch.beat]
-            if not beat.seen:
+            if not (beat.seen and outcomes[stretch.beat].acted):
                 found |= {*range(stretch.start, stretch.end)}
                 continue
             for detail in beat.unshown:
@@ -177,10 +184,15 @@ def _furniture_in(text: str, word: str) -> bool:
 
 
 def _runs(keyframes: Sequence[PlannedKeyframe]) -> list[tuple[int | None, Rows]]:
-    """Keyframes with the beat they are told with; one of none goes with what follows it, the last with those before."""
+    """Keyframes with the beat they are told with; None: they are told by themselves.
+
+    One of no beat that leads to others goes with what follows it, the last of all with those before it.
+    """
     owners: list[int | None] = []
     for keyframe in reversed(keyframes):
-        owners.append(keyframe.beat if keyframe.beat is not None or not owners else owners[-1])
-    last = next((owner for owner in owners if owner is not None), None)
-    known = iter([last if owner is None else owner for owner in reversed(owners)])
+        leads = keyframe.beat is None and connects(keyframe) and owners
+        owners.append(owners[-1] if leads else keyframe.beat)
+    if len(owners) > 1 and keyframes[-1].beat is None and connects(keyframes[-1]):
+        owners[0] = owners[1]
+    known = reversed(owners)
     return [(owner, list(run)) for owner, run in groupby(enumerate(keyframes), key=lambda _: next(known))]

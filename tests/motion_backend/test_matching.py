@@ -151,7 +151,7 @@ def test_hours_for_a_learner_are_of_one_side_and_the_same_from_a_seed() -> None:
 def test_every_walk_gets_there_and_says_who_made_what() -> None:
     motion, completed = acted()
     assert all(completed), motion.reason
-    assert shares(motion)["matching"] > 0.6
+    assert shares(motion)["matching"] > 0.5
     reasons = {phase.fallback for phase in motion.phases if phase.backend == "procedural"}
     assert STARTS_AND_STOPS in reasons
     assert all(not phase.fallback for phase in motion.phases if phase.backend == "matching")

@@ -32,7 +32,7 @@ def encoder() -> MiniLM:
     ("told", "before", "skill", "caption"),
     [
         ("pulls the curtain shut", "", Skill.TOUCH, ""),
-        ("buries her nose in a paperback", "", Skill.SITDOWN, "reading"),
+        ("sits with her nose in a paperback", "", Skill.SITDOWN, "reading"),
         ("hammers away at the keyboard", "", Skill.SITDOWN, "typing"),
         ("tiptoes past the nursery", "", Skill.LOCO, "tiptoes"),
         ("collapses into bed, fast asleep", "", Skill.LIEDOWN, ""),

@@ -76,12 +76,12 @@ def test_a_trial_without_a_place_is_none(monkeypatch: pytest.MonkeyPatch) -> Non
      (BACKEND, None, False)],
 )  # fmt: skip
 def test_a_trial_is_done_where_the_simulated_body_did_all_of_it(
-    backend: str, told: dict[str, int] | None, reached: bool, monkeypatch: pytest.MonkeyPatch
+    backend: str, told: dict[str, float] | None, reached: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     bodies = iter([standing_still(80), by(backend)])
     monkeypatch.setattr(physics_evaluation, "perform", lambda *_: performed(next(bodies)))
     monkeypatch.setattr(
-        physics_evaluation, "physics_of", lambda _: told and {**told, "rewinds": 1, "weight_error": 0.03}
+        physics_evaluation, "physics_of", lambda _: told and dict(told, rewinds=1) | {"weight_error": 0.03}
     )
     found = run_trial(TRIAL)
     assert found is not None

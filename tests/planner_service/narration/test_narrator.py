@@ -32,10 +32,11 @@ from planner_service.narration.keyframe_phrases import Variety, templates, touch
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrative_voice import Voice, tells_of_one
 from planner_service.narration.narrator import narrate
-from planner_service.narration.retelling import retell
+from planner_service.narration.retold_theme import retell
 from planner_service.narration.story_words import title_of
 from planner_service.narration.tense import bases, in_past
 from planner_service.narration.told import Told
+from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.script import BeatKind, Keyframe, LongScript, PlannedKeyframe
 from planner_service.themes.beats import beats_of
 from planner_service.themes.lexicon import gerund, past, third_person
@@ -250,7 +251,7 @@ def test_what_the_body_is_not_seen_doing_is_a_thought_and_no_event(
     assert told.marked(lambda words: words) == told.text
     bounds = [bound for span in told.thoughts for bound in (span.start, span.end)]
     assert bounds == sorted(bounds)
-    if all(one.seen and not one.unshown for one in script.beats):
+    if all(one.acted and one.beat.seen and not one.beat.unshown for one in planned_beats(script).outcomes):
         assert thoughts == []
 
 
