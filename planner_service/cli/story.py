@@ -205,7 +205,7 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     text = Text(told.text)
     for span in told.thoughts:
         text.stylize("italic dim", span.start, span.end)
-    console.print(text, f"\n{UNSEEN}\n" if told.thoughts else "", highlight=False)
+    console.print(text, f"\n{UNSEEN}\n" if told.thoughts else "", sep="\n", highlight=False)
     console.print(f"played by {', '.join(told_look(made.planned.character))}\n", highlight=False)
     table = plain_table(
         "#", "moment", "at", "seconds", "reached", "off by", right=("#", "seconds", "off by"), fold=True
