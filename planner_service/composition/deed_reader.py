@@ -18,6 +18,7 @@ from planner_service.composition.beat_classifier import BeatClassifier, Likely, 
 from planner_service.composition.caption_senses import contradicted, is_shown, shows
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, is_another, pieces_in
 from planner_service.composition.mood_captions import captions_of
+from planner_service.scripts.acted_beats import RESTS
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
@@ -219,6 +220,9 @@ class DeedReader:
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
         if likely is None or not keyframes or deed.row.stands:
             return by_table
+        rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
+        if by_table and rests and RESTS.match(clause.text):
+            return True  # whatever hands do there
         if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
             rises = max(share for (skill, _), share in likely.captions.items() if skill in RISINGS)
             return min(rises, likely.shown) > SURE  # from whatever: a bed or a chair

@@ -317,7 +317,11 @@ class KeyframeWriter:
 
     def _rise(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Get up."""
-        if self._resting is None and self.keyframes[-1].skill in RISINGS:
+        last = self.keyframes[-1]
+        if self._resting is None and last.skill in RISINGS:
+            ways = self.reader.likeliest(self._clause, last.skill, captions()[last.skill.value]) if self._clause else ()
+            if ways and last.caption not in ways:  # who "wakes up and gets up slowly"
+                self.keyframes[-1] = last.model_copy(update={"caption": ways[0]})
             self._show(index)
             return
         if self._resting is None:

@@ -8,6 +8,7 @@ what they do.
 from __future__ import annotations
 
 import re
+import sys
 import zlib
 from collections.abc import Sequence
 from itertools import groupby, pairwise
@@ -144,7 +145,18 @@ class _Teller:
                 start, _, before = groups.pop()
                 keyframes = tuple(sorted((*before, *keyframes)))
             groups.append((start, end, keyframes))
+        groups = [self._with_others(*group, *near) for group, near in zip(groups, _between(groups), strict=True)]
         return {at: keyframes for start, end, keyframes in groups for at in range(start, end)}
+
+    def _with_others(
+        self, start: int, end: int, keyframes: tuple[int, ...], after: int, before: int
+    ) -> tuple[int, int, tuple[int, ...]]:
+        """The words of a group of keyframes with those of other beats that they show too: "sat there | and wrote",
+        as far as between two tokens."""
+        also = {beat for index in keyframes for beat in self.script.keyframes[index].also}
+        shown = [one for one in self.told.stretches if one.beat in also and after <= one.start and one.end <= before]
+        starts, ends = (one.start for one in shown), (one.end for one in shown)
+        return min(start, *starts, start), max(end, *ends, end), keyframes
 
     def _thoughts(self) -> set[int]:
         """Tokens of what the body is not seen doing."""
@@ -181,6 +193,12 @@ def _furniture_in(text: str, word: str) -> bool:
     names = (word.lower(), display_name(word).lower())
     two = map(" ".join, pairwise(words))
     return any(one in names or (is_known(one) and class_of(one) == class_of(word)) for one in (*two, *words))
+
+
+def _between(groups: Sequence[tuple[int, int, tuple[int, ...]]]) -> list[tuple[int, int]]:
+    """For each of some stretches where the one before ends and the next begins."""
+    ends = [0, *(end for _, end, _ in groups[:-1])]
+    return list(zip(ends, [*(start for start, _, _ in groups[1:]), sys.maxsize], strict=True)) if groups else []
 
 
 def _runs(keyframes: Sequence[PlannedKeyframe]) -> list[tuple[int | None, Rows]]:

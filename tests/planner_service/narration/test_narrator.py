@@ -283,6 +283,24 @@ def test_a_deed_that_something_stands_for_is_a_thought_beside_its_keyframes(seed
     assert spoken(told) == [0, 1]
 
 
+def test_what_a_keyframe_shows_besides_is_told_with_it() -> None:
+    script = made(
+        "He sits at the desk and writes a letter, then stands up.",
+        [beat("sits at the desk"), beat("writes a letter"), beat("stands up")],
+        [
+            frame("sitdown", "writing at the table, right hand moving", "office chair", 0).model_copy(
+                update={"also": (1,)}
+            ),
+            frame("standup", "stand up", "office chair", 2),
+        ],
+    )
+    told = narrate(script, JAMES)
+    assert [told.text[span.start : span.end] for span in told.spans] == [
+        "sat at the desk and wrote a letter",
+        "stood up",
+    ]
+
+
 @tries(60)
 @given(
     st.sampled_from(["swims across a lake", "kissed his boss", "is buying seven goats", "is furious", "says he left"]),
