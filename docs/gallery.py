@@ -36,7 +36,8 @@ def main() -> None:
 def write_story_loop(story: Story, path: Path) -> None:
     """A story's keyframes, or as many of them as there is time for."""
     chosen = np.unique(np.linspace(0, len(story.segments) - 1, MOMENTS).round().astype(int))
-    moments = [moment(story.segments[k], SECONDS, story.motion.fps) for k in chosen]
+    each = SECONDS * MOMENTS / len(chosen)
+    moments = [moment(story.segments[k], each, story.motion.fps) for k in chosen]
     write_loop(story.planned.home, story.motion, story.segments, moments, path, LOOP, story.role)
 
 
