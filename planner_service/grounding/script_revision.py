@@ -15,14 +15,18 @@ from pydantic import Field
 from motion_backend.emotion_words import emotion_of
 from motion_backend.motion import RISINGS
 from motion_backend.procedural.caption_coverage import understands
+from planner_service.composition.caption_senses import is_shown
+from planner_service.composition.deed_lexicon import deed_of
 from planner_service.grounding.furnish import Furnished, furnished_again
 from planner_service.grounding.keyframes_to_actions import NEEDS
+from planner_service.scripts.acted_beats import beats_in, connects
 from planner_service.scripts.caption_actions import look_of
 from planner_service.scripts.caption_fallbacks import hashed_words
 from planner_service.scripts.captions import captions
-from planner_service.scripts.script import EMOTIONS, Keyframe, LongScript, PlannedKeyframe
+from planner_service.scripts.script import EMOTIONS, Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_words import affords
+from planner_service.themes.beats import read_beat
 from scene_graphs.errors import FieldPath, UserError
 from scene_graphs.furniture import canonical, categories_of, display_name, is_known
 from scene_graphs.graph.furniture_graph import offers
@@ -83,7 +87,31 @@ def _mended(script: LongScript, planned: Sequence[PlannedKeyframe]) -> LongScrip
     keyframes, repairs = repair(planned)
     if not keyframes:
         raise RevisionError([Fault(0, "skill", f"nothing is left that a body can do: {'; '.join(repairs)}")])
-    return script.model_copy(update={"keyframes": keyframes, "repairs": repairs})
+    beats = tuple(_judged_anew(beat, index, script.keyframes, keyframes) for index, beat in enumerate(script.beats))
+    return script.model_copy(update={"beats": beats, "keyframes": keyframes, "repairs": repairs})
+
+
+def _judged_anew(beat: Beat, index: int, before: Sequence[PlannedKeyframe], now: Sequence[PlannedKeyframe]) -> Beat:
+    """A beat whose keyframes were changed: something else stands for it, unless the table of deeds has that they show
+    it."""
+    old, new = _doing(index, before), _doing(index, now)
+    if beat.kind != "deed" or not new or [_what(one) for one in old] == [_what(one) for one in new]:
+        return beat
+    clause = read_beat(beat).clause
+    deed = deed_of(clause)
+    able = [one for one in new if deed is not None and (deed.row.captions or one.skill is deed.skill)]
+    shown = deed is not None and bool(able) and is_shown(clause, deed, able)
+    besides = tuple(text for text in beat.unshown if text != beat.text)
+    return beat.model_copy(update={"unshown": besides if shown else (beat.text, *besides)})
+
+
+def _doing(index: int, keyframes: Sequence[PlannedKeyframe]) -> list[PlannedKeyframe]:
+    """The keyframes that show a beat, without those that only lead to others."""
+    return [one for one in keyframes if index in beats_in(one.beat, one.also) and not connects(one)]
+
+
+def _what(keyframe: PlannedKeyframe) -> tuple[str, str, str]:
+    return keyframe.skill, keyframe.caption, keyframe.furniture
 
 
 class _Reader:

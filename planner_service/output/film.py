@@ -44,6 +44,8 @@ READ: Final = (3.0, 2.0, 7.0)
 """Seconds that words are shown at least and at most, and besides those that their letters ask for."""
 LETTERS: Final = 10.0
 """Read in a second."""
+DONE: Final = 2.5
+"""Seconds after which what a keyframe does is being done, at most: until then one sits down to it."""
 SHORTEST: Final = 1.5
 """Seconds between two that follow each other."""
 SENTENCE: Final = re.compile(r"[^.!?…]+[.!?…]*[\"”’']*\s*")
@@ -94,15 +96,16 @@ def write_film(
     check_film()
     motion, told = filmed.motion, filmed.told
     shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1], filmed.role)
-    words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in subtitles(told, filmed.segments, motion.fps)]
     title = _lettered(told.title, size, TITLE_HEIGHT)
-    titled = round(TITLE_SECONDS * motion.fps)
+    titled = round(TITLE_SECONDS * motion.fps) if told.title else 0
+    lines = subtitles(told, filmed.segments, motion.fps, titled)
+    words = [(line, _lettered(line.text, size, TEXT_HEIGHT)) for line in lines]
 
     def dressed(frame: int, picture: Planes) -> Planes:
         for line, letters in words:
-            if line.start <= frame < line.stop and frame >= titled:
+            if line.start <= frame < line.stop:
                 lay_words(picture, letters, WORDS_END, SHADE)
-        if frame < titled and told.title:
+        if frame < titled:
             lay_words(picture, title, TITLE_END, SHADE)
         return picture
 
@@ -114,8 +117,8 @@ def write_film(
     return write_mp4(counted(), path, motion.fps)
 
 
-def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int) -> list[Subtitle]:
-    """The told words, each half of its reading time before its last keyframe: there what it tells is reached.
+def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled: int = 0) -> list[Subtitle]:
+    """The told words, each half of its reading time before its last keyframe is being done, none before frame `titled`.
 
     What tells no keyframe is shown with what follows, and what is done at nearly the same time together. `segments` are
     frames of keyframes.
@@ -126,7 +129,8 @@ def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int) -> list
         waiting += text
         if not keyframes:
             continue
-        start, aim = segments[min(keyframes)][0], segments[max(keyframes)][0]
+        start, (last, end) = max(segments[min(keyframes)][0], titled), segments[max(keyframes)]
+        aim = last + min((end - last) // 2, round(DONE * fps))
         if begun and start - begun[-1].start < SHORTEST * fps:
             begun[-1] = _Line(begun[-1].start, aim, begun[-1].text + waiting)
         else:

@@ -30,7 +30,7 @@ from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
 from motion_backend.skeleton import INDEX
 from planner_service.narration.told import Span, Told
-from planner_service.output.film import subtitles
+from planner_service.output.film import DONE, subtitles
 
 SIZE = (96, 54)
 
@@ -221,18 +221,20 @@ def test_a_sentence_that_tells_of_two_keyframes_is_shown_in_two_parts_and_none_s
     told = Told("", text, tuple(spans))
     shown = subtitles(told, [(0, 90), (90, 600), (600, 1500)], 30)
     assert [line.text for line in shown] == ["He sat down,", "and read a book.", "He slept."]
-    assert [line.start for line in shown] == [0, 90, 600]
+    assert [line.start for line in shown] == [0, 111, 630]
     assert max(line.stop - line.start for line in shown) <= 7 * 30
     together = subtitles(told, [(0, 20), (20, 600), (600, 1500)], 30)
     assert [line.text for line in together] == ["He sat down, and read a book.", "He slept."]
 
 
-def test_words_are_there_when_one_has_come_to_where_they_are_done():
+def test_words_are_there_when_what_they_tell_is_being_done():
     told = Told("", "She slept.", (Span(0, 9, (0, 1)),))
     (line,) = subtitles(told, [(0, 900), (900, 1500)], 30)
-    assert 900 - 3.5 * 30 <= line.start < 900 < line.stop
-    (soon,) = subtitles(told, [(0, 30), (30, 1500)], 30)
+    assert line.start < 900 + DONE * 30 < line.stop
+    (soon,) = subtitles(told, [(0, 30), (30, 60)], 30)
     assert soon.start == 0
+    (after,) = subtitles(told, [(0, 30), (30, 600)], 30, titled=75)
+    assert (after.start, after.text) == (75, "She slept."), "a title hides no words"
 
 
 def test_a_loop_has_every_third_frame_of_its_moments_once_and_begins_anew(tmp_path: Path):

@@ -1,0 +1,57 @@
+"""A script that somebody changed says of each beat whether what is done now shows it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from for_each import for_each
+from narration.hand_made_scripts import beat, frame, made
+
+from planner_service.grounding.script_revision import EditedKeyframe, rewritten
+from planner_service.scripts.acted_beats import planned_beats
+from planner_service.scripts.script import LongScript
+from scene_graphs.home import Home, home_from_layouts
+from scene_graphs.layout_library import built_in_index
+
+SCRIPT = made(
+    "She sits down and reads a book on the sofa.",
+    [beat("sits down"), beat("reads a book on the sofa")],
+    [
+        frame("loco", "smoothly forward walk", "sofa", 0),
+        frame("sitdown", "reading, book held in both hands", "sofa", 0).model_copy(update={"also": (1,)}),
+    ],
+)
+
+
+def home() -> Home:
+    return home_from_layouts([built_in_index().layout("living-room-0002")], 0)
+
+
+def changed(**words: Any) -> LongScript:
+    """The script with its last keyframe changed."""
+    rows = [{**one.model_dump(include={"skill", "emotion", "caption", "furniture"}), "index": index}
+            for index, one in enumerate(SCRIPT.keyframes)]  # fmt: skip
+    rows[-1] |= words
+    return rewritten(SCRIPT, [EditedKeyframe.model_validate(row) for row in rows], home())
+
+
+def acted(script: LongScript) -> list[bool]:
+    return [one.acted for one in planned_beats(script).outcomes]
+
+
+def test_what_is_left_as_it_was_is_acted_as_it_was() -> None:
+    assert acted(changed()) == acted(SCRIPT) == [True, True]
+
+
+@for_each(
+    ("skill", "caption", "reads"),
+    [
+        ("sitdown", "drinking from a cup in the right hand", False),
+        ("sitdown", "sit upright with hands on thighs", False),
+        ("liedown", "reading on the back, book held above the chest", True),
+    ],
+)
+def test_a_beat_is_only_stood_for_where_its_caption_was_changed_for_something_else(
+    skill: str, caption: str, reads: bool
+) -> None:
+    assert acted(changed(skill=skill, caption=caption)) == [skill == "sitdown", reads]
