@@ -11,7 +11,7 @@ from planner_service.composition.deed_lexicon import pieces_told
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
 from planner_service.grounding.room_assignment import housed
-from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
+from planner_service.grounding.seat_access import draw_up, pull_to_dict, seat, seat_with_pulls
 from planner_service.grounding.seat_tables import rests, tables_of
 from planner_service.grounding.window_places import WINDOW, at_window, has_window
 from planner_service.scripts.acted_beats import AT_THE, IN_PLACE_OF
@@ -47,6 +47,8 @@ class RoomMatch:
     missing: tuple[str, ...]
     pulls: tuple[Pull, ...] = ()
     """Chairs that stand pulled out from the start, since nobody could sit on them where they stood."""
+    drawn_up: tuple[Pull, ...] = ()
+    """Chairs that stand nearer to their table from the start, for what is done at it."""
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,7 @@ class Furnished:
             line += "" if match.exact else " (another may fit better)"
             given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
             pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
+            pulls += [f"{self._name(number, move)} drawn up to its table" for move in match.drawn_up]
             lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing], *pulls]))
         return lines
 
@@ -122,6 +125,7 @@ class Furnished:
                 ],
                 "missing": list(match.missing),
                 "pulled_out": [pull_to_dict(pull) for pull in match.pulls],
+                "drawn_up": [pull_to_dict(move) for move in match.drawn_up],
             }
             for match in self.matches
         ]
@@ -164,9 +168,12 @@ def furnish(
     seating = seat(placing, script, where) if are_ours else seat_with_pulls(placing, script, where)
     if seating.missing:
         raise FurnishError(seating.missing)
-    matches = _matches(unique, chosen, seating.said)
-    pulled = tuple(replace(match, pulls=seating.pulls.get(room, ())) for room, match in enumerate(matches))
-    return Furnished(script, seating.placing.home, pulled, seating.places, merged)
+    home, drawn = draw_up(seating.placing.home, script.keyframes, seating.places)
+    matches = tuple(
+        replace(match, pulls=seating.pulls.get(room, ()), drawn_up=drawn.get(room, ()))
+        for room, match in enumerate(_matches(unique, chosen, seating.said))
+    )
+    return Furnished(script, home, matches, seating.places, merged)
 
 
 def furnished_again(stage: Furnished, script: LongScript) -> Furnished:
