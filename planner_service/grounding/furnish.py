@@ -10,10 +10,10 @@ from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import pieces_told
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
+from planner_service.grounding.opening_places import has_opening, opening_of
 from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import draw_up, pull_to_dict, seat, seat_with_pulls
 from planner_service.grounding.seat_tables import rests, tables_of
-from planner_service.grounding.window_places import WINDOW, at_window, has_window
 from planner_service.scripts.acted_beats import AT_THE, IN_PLACE_OF
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.usable_furniture import Pull
@@ -71,24 +71,25 @@ class Furnished:
             piece = "floor"
             if place.object_id is not None:
                 piece = display_name(self.home.object(place.object_id).category)
-            if self._at_window(index):
-                piece = WINDOW
+            piece = self._opening(index) or piece
             named[index] = (piece, room)
         return named
 
-    def _at_window(self, index: int) -> bool:
-        """Whether a hand goes to a window there, or who walks goes to where one does; windows are no pieces."""
+    def _opening(self, index: int) -> str:
+        """The window or door that a hand goes to there, or that who walks goes to where one does; else ""."""
         keyframe = self.script.keyframes[index]
         if keyframe.skill is Skill.LOCO and not keyframe.on_floor and index + 1 < len(self.script.keyframes):
             keyframe = self.script.keyframes[index + 1]
-        touches = keyframe.skill is Skill.TOUCH and at_window(keyframe.skill, self.script.said_of(keyframe))
-        return touches and has_window(self.home)
+        if keyframe.skill is not Skill.TOUCH:
+            return ""
+        kind = opening_of(keyframe.skill, self.script.said_of(keyframe))
+        return kind if kind is not None and has_opening(self.home, kind) else ""
 
     def instead(self, index: int) -> str:
         """What the hands of a keyframe are at in place of the piece that the theme names: "at the wardrobe in place of
         the washing machine"; "" where they are at that, or the theme names none."""
         keyframe, place = self.script.keyframes[index], self.places[index]
-        if keyframe.skill is not Skill.TOUCH or place.object_id is None or self._at_window(index):
+        if keyframe.skill is not Skill.TOUCH or place.object_id is None or self._opening(index):
             return ""
         category = canonical(self.home.object(place.object_id).category)
         if category in categories_of(keyframe.piece[0]):
