@@ -38,6 +38,7 @@ from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.opening_words import opening_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -117,6 +118,8 @@ class KeyframeWriter:
     """Of which deed it is written."""
     _rises: bool = False
     """Whether getting up is done next."""
+    _ahead: str | None = None
+    """The room that is spoken of next."""
     _plain: bool = False
     """Whether the posture shows nothing yet but that one rests."""
 
@@ -126,6 +129,8 @@ class KeyframeWriter:
         beat = read.beat
         deed = self._deed(read.clause) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
+        nexts = (one.room or room_of(one.clause) for one in beats[index + 1 :])
+        self._ahead = next(filter(None, nexts), None)
         if beat.kind in NOT_ACTED:
             self.why[index] = SPOKEN_OF if read.clause.aside else NOT_ACTED[beat.kind]
         elif deed is not None and deed.row.why:
@@ -459,7 +464,7 @@ class KeyframeWriter:
         """Room and furniture where it is done: as the beat says, else as is usual, of what there will be."""
         need, usual = NEEDS[skill], deed_table().usual
         here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
-        asked = dict.fromkeys((read.room, room_of(read.clause), here))
+        asked = dict.fromkeys((read.room, room_of(read.clause), here or self._ahead))
         rooms = [room for room in asked if room is not None and room in self._rooms]
         near = [] if deed.named else [one.furniture for one in self._near()]
         last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
@@ -470,8 +475,9 @@ class KeyframeWriter:
             told = (read.room, room_of(read.clause))
             fit = (room for room in rooms if room in told or piece in usual[room][need])  # else where it usually is
             return next((room for room in fit if self._has(piece, room)), None), piece
+        anywhere = need == "sit" or opening_of(skill, read.text)  # no sofa in kitchens; every room has a door
         for room in rooms:
-            own = [one for one in deed.pieces if need == "sit" and one in usual[room][need]]  # no sofa in kitchens
+            own = [one for one in deed.pieces if anywhere and one in usual[room][need]]
             options = [*last, *own, *deed.pieces, *usual[room][need]]
             if piece := next((one for one in options if affords(one, need) and self._has(one, room)), ""):
                 return room, piece

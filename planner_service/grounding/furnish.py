@@ -10,12 +10,13 @@ from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import pieces_told
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
-from planner_service.grounding.opening_places import has_opening, opening_of
+from planner_service.grounding.opening_places import has_opening
 from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import draw_up, pull_to_dict, seat, seat_with_pulls
 from planner_service.grounding.seat_tables import rests, tables_of
 from planner_service.scripts.acted_beats import AT_THE, IN_PLACE_OF
 from planner_service.scripts.script import LongScript, PlannedKeyframe
+from planner_service.themes.opening_words import opening_of
 from scene_graphs.affordances.usable_furniture import Pull
 from scene_graphs.errors import UserError
 from scene_graphs.furniture import ROOM_TYPES, Furniture, canonical, canonical_room, categories_of, display_name

@@ -22,21 +22,14 @@ from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
-from planner_service.grounding.opening_places import (
-    LACKS,
-    Kind,
-    OpeningPlace,
-    comes_in,
-    entry,
-    opening_of,
-    opening_place,
-)
+from planner_service.grounding.opening_places import LACKS, OpeningPlace, entry, opening_place
 from planner_service.grounding.seat_tables import done_at_tables
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
+from planner_service.themes.opening_words import Kind, comes_in, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
 from scene_graphs.errors import UserError
 from scene_graphs.home import Home

@@ -1,0 +1,59 @@
+"""Windows and doors in the words of a theme, which are no furniture: who looks out, opens one, comes in."""
+
+from __future__ import annotations
+
+import re
+from typing import Final, Literal
+
+from motion_backend.motion import Skill
+
+Kind = Literal["window", "door"]
+"""Its name is the object id of what is touched there as well."""
+_LOOKS: Final = re.compile(
+    r"\bwindows?\b|\b(?:look|gaz|star|peer|watch|glanc)\w*\b.*\b(?:outside|street|garden|rain|snow|sunset|sunrise|sky"
+    r"|stars|moon)\b",
+    re.IGNORECASE,
+)
+_HANDLES: Final = re.compile(
+    r"\b(?:open|clos|shut|draw|pull|part|fling|throw|crack|latch|unlatch|wip|clean|wash)\w*\s"
+    r"(?:(?!by|at|near|beside|under|from|to|on|in\b)\w+\s){0,3}(?:windows?|curtains?|blinds?|shutters?)\b",
+    re.IGNORECASE,
+)
+_OF_A_HOUSE: Final = r"(?:(?:the|a|an|his|her|their|my|its|front|back|outer|heavy|street|kitchen|bedroom|room) )*"
+_OPENS: Final = re.compile(
+    r"\b(?:open|clos|shut|slam|bang|lock|unlock|bolt|unbolt|latch|unlatch|answer|push|pull|kick|yank|throw|fling|swing"
+    rf"|get|knock|check|tr(?:y|ies|ied))\w*\s(?:\w+ly\s)?(?:(?:at|on|against|behind) )?{_OF_A_HOUSE}"
+    r"(?:doors?|doorbell|bell|doorknob|door handle)\b(?! of)"
+    r"|\banswer\w* (?:the|a) knock\b"
+    r"|\blet(?:s|ting)? (?:(?:the|a|his|her|their|my) )?"
+    r"(?:cat|dog|guests?|friends?|him|her|them|visitors?) (?:in|out)\b",
+    re.IGNORECASE,
+)
+_TO_THE_DOOR: Final = re.compile(
+    rf"\b(?:to|at|by|near|behind|towards?|for) {_OF_A_HOUSE}(?:door|doorway|entrance)(?!\w| of)", re.IGNORECASE
+)
+_COMES_IN: Final = re.compile(
+    r"\b(?:com|came|get|got|arriv|return|walk|step|storm|burst|stumbl|stagger|rush|hurr|bound|trudg|stomp|sneak|slip)\w*"
+    r"\b(?:(?!\b(?:and|then|to)\b)[^,;.])*?\b(?:home|in|inside|indoors|through the (?:front )?door|from (?:work|school)"
+    r"|from (?:the|a|his|her|their) (?:\w+ )?(?:shift|office|shop|funeral|party|school|hospital|walk|run|trip|date))\b"
+    r"|^(?:\w+ )?(?:gets|got|is|was) (?:back|home)\b|\benters? (?:the )?(?:house|home|flat|apartment|room)\b",
+    re.IGNORECASE,
+)
+_NOT_IN: Final = re.compile(
+    r"\b(?:in|inside) (?:the|a|an|his|her|their|my|bed|circles?|front|silence|despair|pain)\b", re.IGNORECASE
+)
+"""Where one is, or how, and not that one comes in."""
+
+
+def opening_of(skill: Skill, said: str) -> Kind | None:
+    """Which opening the words of a keyframe, its caption or the theme's, ask for: to stand at it, or to touch it."""
+    if skill is Skill.TOUCH:
+        return "window" if _HANDLES.search(said) else "door" if _OPENS.search(said) else None
+    if skill is Skill.LOCO:
+        return "window" if _LOOKS.search(said) else "door" if _TO_THE_DOOR.search(said) else None
+    return None
+
+
+def comes_in(said: str) -> bool:
+    """Whether somebody comes in from outside, by the theme's words."""
+    return bool(_COMES_IN.search(_NOT_IN.sub("", said)))
