@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill
+from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill, moment
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
@@ -246,13 +246,13 @@ class _Stage:
             return self.on  # who rests there rests otherwise
         if place.object_id is None:
             if keyframe.skill is Skill.TOUCH:
-                raise UnreachableError(f"keyframe {index}: nothing to touch, {keyframe.furniture!r} is not in the home")
+                raise UnreachableError(f"{moment(index)}: nothing to touch, {keyframe.furniture!r} is not in the home")
             return self._on_floor(need, place.room)
         placed = self.home.object(place.object_id)
         found = self._reachable(placed, need)
         if not found:
             raise UnreachableError(
-                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to",
+                f"{moment(index)}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to",
                 "clear the way to it, or choose another room",
             )
         if need == "touch":
