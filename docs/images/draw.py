@@ -1,4 +1,5 @@
-"""The pictures of the docs, made by our own code: `python docs/images/draw.py` writes them here, all but page.png."""
+"""The pictures of the docs, made by our own code: `python docs/images/draw.py` writes them here, all but page.png, which a browser takes of the demo's
+story (1440 × 900)."""
 
 from __future__ import annotations
 

@@ -53,11 +53,14 @@ function moverWords({ backend, share }: Mover): string {
   return `${backend}${kind ? ` (${kind})` : ""}: ${percent(share)} of the film`;
 }
 
+/** "diffusion: it floated" as "instead of diffusion, since it floated". */
+const sinceWords = (words: string): string => words.replace(/^(\w+): /, "instead of $1, since ");
+
 /** All of them as a list; null while nothing is known. */
 export function moverList(phases: readonly Phase[]): HTMLElement | null {
   const movers = moversOf(phases);
   if (!movers.length) return null;
   const reasons = ({ reasons: all }: Mover): HTMLElement | null =>
-    all.length ? h("ul", {}, ...all.map(({ words, share }) => h("li", {}, `${percent(share)}: ${words}`))) : null;
+    all.length ? h("ul", {}, ...all.map(({ words, share }) => h("li", {}, `${percent(share)}: ${sinceWords(words)}`))) : null;
   return h("ul", { class: "movers", "aria-label": "What moved the body" }, ...movers.map((mover) => h("li", {}, moverWords(mover), reasons(mover))));
 }

@@ -20,7 +20,7 @@ export function plannerWords(planner: string | null): string {
 export function encoderWords(encoder: string | null): string {
   if (!encoder) return "No short scripts were looked up.";
   if (encoder === "hashing") return "Scripts found by their words (hashing), the stand-in where no sentence encoder is.";
-  return `Scripts found by meaning with the sentence encoder ${encoder}. It and the classifier of clauses are all that is learned here.`;
+  return `Scripts found by meaning with the sentence encoder ${encoder}. It and the classifier of clauses are all that is learned in planning.`;
 }
 
 /** A story's figures, each with what it counts. */
