@@ -62,7 +62,7 @@ def play(
     console = Console(markup=False)
     pipeline = Pipeline(open_shelves(settings))
     for line in unknown_captions(keyframes, pipeline.words):
-        console.print(line, highlight=False, soft_wrap=True)
+        console.print(f"{script.name}: {line}", highlight=False, soft_wrap=True)
     request = StoryRequest(
         theme=title,
         keyframes=tuple(keyframes),
@@ -146,7 +146,7 @@ def _furniture_of(row: Any) -> str:
 def unknown_captions(keyframes: Sequence[Keyframe], words: Words = hashed_words) -> list[str]:
     """Where captions stand that are none of the body's own, and what is done: their words as far as they go, or another
     caption. `words` are asked for what is near."""
-    known = {skill: list(dict.fromkeys([*rows, *synonyms().get(skill, {})])) for skill, rows in captions().items()}
+    known = {skill: [*rows, *synonyms().get(skill, {})] for skill, rows in captions().items()}
     told = []
     for number, keyframe in enumerate(keyframes):
         if (caption := look_of(keyframe.caption)) in (rows := known[keyframe.skill]):
@@ -158,5 +158,5 @@ def unknown_captions(keyframes: Sequence[Keyframe], words: Words = hashed_words)
 
 
 def _nearest(word: str, known: Sequence[str]) -> str:
-    found = get_close_matches(word, known, n=3, cutoff=0.4)
+    found = get_close_matches(word, list(dict.fromkeys(known)), n=3, cutoff=0.4)
     return f"; perhaps {', '.join(map(repr, found))}" if found else ""

@@ -76,12 +76,13 @@ def title_of(theme: str, mood: str) -> str:
 
 
 def headline(text: str) -> str:
-    """A text's first sentence, short enough for a title: up to a comma, or its first words."""
+    """A text's first sentence, short enough for a title: up to a comma or an "and", or its first words."""
     first = _FIRST.match(" ".join(text.split()))
     words = first[0].rstrip(" .,;:") if first else ""
     if len(words) > MAX_TITLE:
-        comma, space = words.rfind(",", 0, MAX_TITLE), words.rfind(" ", 0, MAX_TITLE)
-        words = words[:comma] if comma > 0 else f"{words[: max(space, 0) or MAX_TITLE]}…"
+        whole = max(words.rfind(joint, 0, MAX_TITLE) for joint in (",", " and ", " then "))
+        space = words.rfind(" ", 0, MAX_TITLE)
+        words = words[:whole] if whole > 0 else f"{words[: max(space, 0) or MAX_TITLE]}…"
     return words[:1].upper() + words[1:]
 
 

@@ -36,7 +36,7 @@ def test_a_list_a_script_and_a_story_are_the_same_keyframes(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("value", "said"),
     [
-        ([SIT | {"furniture": "soffa"}], "moment 1, furniture: 'soffa' is not known; perhaps"),
+        ([SIT | {"furniture": "soffa"}], "moment 1, furniture: 'soffa' is not known; perhaps 'sofa', 'sofa bed'"),
         ([WALK, {"skill": "fly", "caption": "walk"}], "moment 2, skill: Input should be"),
         ([WALK | {"colour": "red"}], "moment 1, colour: Extra inputs"),
         ([3], "moment 1: Input should be"),
