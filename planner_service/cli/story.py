@@ -234,15 +234,17 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
 
 def _slanted(told: Told, console: Console) -> Text:
     """The text with what is not seen slanted, or between asterisks where nothing can be; and what that means."""
-    mark = "%s" if console.color_system else "*%s*"
-    pieces: list[str | tuple[str, str]] = []
-    end = 0
+    mark = "" if console.color_system else "*"
+    text, end = Text(), 0
     for span in told.thoughts:
-        pieces += [told.text[end : span.start], (mark % told.text[span.start : span.end], "italic dim")]
+        text.append(told.text[end : span.start])
+        text.append(f"{mark}{told.text[span.start : span.end]}{mark}", "italic dim")
         end = span.end
-    before, after = UNSEEN.split("{this}")
-    legend = ["\n\n", before, (mark % "this", "italic dim"), after] if told.thoughts else []
-    return Text.assemble(*pieces, told.text[end:], *legend)
+    text.append(told.text[end:])
+    if told.thoughts:
+        before, after = UNSEEN.split("{this}")
+        text.append(f"\n\n{before}").append(f"{mark}this{mark}", "italic dim").append(after)
+    return text
 
 
 def _figures(report: dict[str, Any]) -> str:
