@@ -31,6 +31,7 @@ from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
 from scene_graphs.errors import UserError
+from scene_graphs.furniture import display_name
 from scene_graphs.home import Home
 from scene_graphs.layout import Placed
 from scene_graphs.navigation.path_planner import Walkable
@@ -252,7 +253,7 @@ class _Stage:
         found = self._reachable(placed, need)
         if not found:
             raise UnreachableError(
-                f"{moment(index)}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to",
+                f"{moment(index)}: no spot to {need} on the {display_name(placed.category)} can be walked to",
                 "clear the way to it, or choose another room",
             )
         if need == "touch":
