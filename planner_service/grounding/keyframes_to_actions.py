@@ -252,8 +252,9 @@ class _Stage:
         placed = self.home.object(place.object_id)
         found = self._reachable(placed, need)
         if not found:
+            piece = f"{display_name(placed.category)} ({place.object_id})"
             raise UnreachableError(
-                f"{moment(index)}: no spot to {need} on the {display_name(placed.category)} can be walked to",
+                f"{moment(index)}: no spot to {need} on the {piece} can be walked to",
                 "clear the way to it, or choose another room",
             )
         if need == "touch":
