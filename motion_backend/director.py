@@ -17,7 +17,7 @@ from motion_backend.backend_protocol import BodyState, MotionBackend, Part, Part
 from motion_backend.backends import DEFAULT_BACKEND, load_backend
 from motion_backend.contact_goals import contact_goals
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Character, Motion, Note, Phase, PhaseKind, Posture, join
+from motion_backend.motion import Action, Character, Emotion, Motion, Note, Phase, PhaseKind, Posture, Skill, join
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import build_skeleton
 from motion_backend.state_machine import ENDS, parts_of, shortfall, time_limit
@@ -62,7 +62,9 @@ class Director:
     def begin(self, home: Home, character: Character, seed: int, first: Action | None = None) -> BodyState:
         """The body in the home before its first action: standing, or resting where that has it rest already."""
         state = self._standing(home, character, seed)
-        return _at_rest(home, first, state) if first is not None and first.already else state
+        if first is None or not (first.already or first.begins):
+            return state
+        return _unseen(home, first if first.already else _entering(first), state)
 
     def _standing(self, home: Home, character: Character, seed: int) -> BodyState:
         try:
@@ -167,8 +169,14 @@ class Director:
         return _labelled(motion, asked.part, self.fallback, why, fault(motion, asked)), state
 
 
-def _at_rest(home: Home, first: Action, standing: BodyState) -> BodyState:
-    """As the default backend has settled there, which nobody sees; standing still where it cannot."""
+def _entering(first: Action) -> Action:
+    """A walk to where the body begins."""
+    x, z, yaw = first.begins or (0.0, 0.0, 0.0)
+    return Action(Skill.LOCO, "", Emotion.NEUTRAL, goal=(x, z), facing=yaw, stands=STANDS)
+
+
+def _unseen(home: Home, first: Action, standing: BodyState) -> BodyState:
+    """As the default backend has got there, which nobody sees; standing still where it cannot."""
     backend, state = load_backend(DEFAULT_BACKEND), standing
     parts = parts_of(first, Posture.STANDING)
     for index, part in enumerate(parts[:-1]):

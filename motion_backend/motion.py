@@ -205,6 +205,9 @@ class Action:
     """What is done in the pose, in words ("watch TV"): LINGO's interaction steps."""
     already: bool = False
     """Whether the body sits or lies there before the first frame; so only of the first action."""
+    begins: tuple[float, float, float] | None = None
+    """Where the body stands and looks, [x, z, yaw], before the first frame, if the words say: at the door that it has
+    come in by. So only of the first action."""
     lacks: str = ""
     """What the home lacks for it, and what is done instead (`Note.words`); empty where it lacks nothing."""
 

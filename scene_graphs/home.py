@@ -45,6 +45,10 @@ __all__ = [
 ]
 
 MAX_ROOMS: Final = 4
+HANDLE_HEIGHT: Final = 1.0
+"""Of a door's handle above the floor (metres)."""
+HANDLE_IN: Final = 0.135
+"""From the edge of a door to the middle of its handle (metres)."""
 _DRAWS: Final = 12
 """Of rooms for a random home, before it is told why they cannot be joined."""
 
@@ -71,6 +75,15 @@ class Wall:
     height: float
     openings: tuple[Opening, ...] = ()
     """Doorways to other rooms, doors and windows to the outside; their segments lie on the wall's."""
+
+    def handle(self, door: Opening) -> Point2:
+        """[x, z] of the handle of one of its doors: near the end of it that is farther along the wall."""
+        start, end = (np.asarray(point, dtype=float) for point in self.segment)
+        length = float(np.linalg.norm(end - start))
+        along = (end - start) / length
+        farther = min(max(float((np.asarray(point) - start) @ along) for point in door.segment), length)
+        x, z = start + (farther - HANDLE_IN) * along
+        return float(x), float(z)
 
 
 @dataclass(frozen=True)
@@ -114,6 +127,11 @@ class Home:
         reach = WALL_GAP / 2 + 0.01
         ways = [shapely.LineString(doorway.segment).buffer(reach, cap_style="flat") for doorway in self.doorways]
         return shapely.union_all([*self._outlines, *ways])
+
+    def leads_on(self, opening: Opening) -> bool:
+        """Whether an opening of a wall is a side of a doorway to another room."""
+        middle = shapely.Point(np.mean(np.asarray(opening.segment), axis=0))
+        return any(shapely.LineString(doorway.segment).distance(middle) < 0.12 for doorway in self.doorways)
 
     def room_at(self, point: Point2) -> int | None:
         """The room a point on the floor lies in; in a doorway the nearer room; None outside the home."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import re
 import zipfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -107,9 +107,7 @@ def read_stretches(path: Path) -> list[Stretch]:
                 arrays = {name: _checked(file[name], name) for name in _ARRAYS}
                 rows = json.loads(bytes(file["stretches"]))
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-        raise ClipError(
-            f"{path.name} cannot be read ({error})", "give a file of `sims clips build` or `train act`"
-        ) from error
+        raise _unread(path, error) from error
     if not own:
         return stretches_of(read_dataset(path))
     bounds = np.cumsum([0, *(int(row["frames"]) for row in rows["rows"])])
@@ -118,8 +116,10 @@ def read_stretches(path: Path) -> list[Stretch]:
     return [_stretch(row, arrays, slice(*bounds[i : i + 2])) for i, row in enumerate(rows["rows"])]
 
 
-def write_stretches(stretches: Sequence[Stretch], path: Path) -> None:
-    """One .npz; the same stretches give the same bytes."""
+def write_stretches(
+    stretches: Sequence[Stretch], path: Path, sentences: Mapping[str, NDArray[np.float32]] | None = None
+) -> None:
+    """One .npz; the same stretches give the same bytes. `sentences`: features (384,) of what is said in them."""
     rows = [
         {"name": s.name, "person": s.person, "made_of": int(s.made_of), "frames": len(s), "split": s.split,
          "room": s.room, "plain": s.plain, "passages": [asdict(passage) for passage in s.passages]}
@@ -132,7 +132,26 @@ def write_stretches(stretches: Sequence[Stretch], path: Path) -> None:
         "contacts": (np.concatenate([s.contacts for s in stretches]) > 0.5).astype(np.uint8),
         "stretches": np.frombuffer(manifest, np.uint8),
     }
+    if sentences:
+        arrays["sentences"] = np.frombuffer(json.dumps([*sentences]).encode(), np.uint8)
+        arrays["features"] = np.stack([*sentences.values()]).astype(np.float32)
     path.write_bytes(archive(arrays, level=6))
+
+
+def read_sentences(path: Path) -> dict[str, NDArray[np.float32]]:
+    """Features (384,) of sentences that stand in a file of stretches; none where none do. ClipError."""
+    try:
+        with np.load(path) as file:
+            if "sentences" not in file.files:
+                return {}
+            found = dict(zip(json.loads(bytes(file["sentences"])), file["features"], strict=True))
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+        raise _unread(path, error) from error
+    return found
+
+
+def _unread(path: Path, error: Exception) -> ClipError:
+    return ClipError(f"{path.name} cannot be read ({error})", "give a file of `sims clips build` or `train act`")
 
 
 def stretches_of(dataset: Dataset) -> list[Stretch]:

@@ -7,6 +7,7 @@ are shown, in metres.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 import torch
@@ -73,10 +74,14 @@ class Losses:
             + weights.floor * self.floor
         )
 
+    def told(self) -> dict[str, Tensor]:
+        """For the curve, where they were worked out; bones in metres (root mean square)."""
+        found = {name: value.detach() for name, value in vars(self).items()}
+        return found | {"bones": found["bones"].sqrt()}
+
     def numbers(self) -> dict[str, float]:
-        """For the curve; bones in metres (root mean square)."""
-        found = {name: float(value.detach()) for name, value in vars(self).items()}
-        return found | {"bones": found["bones"] ** 0.5}
+        """The same as numbers."""
+        return {name: float(value) for name, value in self.told().items()}
 
 
 def losses(guess: Tensor, clean: Tensor, scale: Scale, kinematics: Kinematics, weights: LossWeights) -> Losses:
@@ -89,23 +94,32 @@ def losses(guess: Tensor, clean: Tensor, scale: Scale, kinematics: Kinematics, w
     speeds, wanted_speeds = made.diff(dim=1), wanted.diff(dim=1)
     contacts = true[:, HISTORY - 1 :, CONTACTS]
     standing = contacts[:, 1:] * contacts[:, :-1]  # (B, 14, 4)
-    lowest = torch.minimum(wanted[:, 1:, FEET, 1], made.new_tensor(LOWEST))
+    feet, low = _feet(str(gap.device))
+    lowest = torch.minimum(wanted[:, 1:, :, 1].index_select(2, feet), low)
     return Losses(
-        clean=(gap * _feature_weights(weights).to(gap)).mean(),
-        bones=((made - wanted)[:, 1:].square().sum(-1) * _joint_weights(weights).to(gap)).mean(),
+        clean=(gap * _feature_weights(weights, str(gap.device))).mean(),
+        bones=((made - wanted)[:, 1:].square().sum(-1) * _joint_weights(weights, str(gap.device))).mean(),
         velocity=(speeds - wanted_speeds).square().sum(-1).mean(),
-        slide=(speeds[:, :, FEET].square().sum(-1) * standing).mean(),
-        floor=functional.relu(lowest - made[:, 1:, FEET, 1]).square().mean(),
+        slide=(speeds.index_select(2, feet).square().sum(-1) * standing).mean(),
+        floor=functional.relu(lowest - made[:, 1:, :, 1].index_select(2, feet)).square().mean(),
     )
 
 
-def _feature_weights(weights: LossWeights) -> Tensor:
+# On the device they are needed on, once: what is sent to a GPU in every step is waited for in every step.
+@cache
+def _feet(device: str) -> tuple[Tensor, Tensor]:
+    return torch.tensor(FEET, device=device), torch.tensor(LOWEST, device=device)
+
+
+@cache
+def _feature_weights(weights: LossWeights, device: str) -> Tensor:
     found = torch.ones(FEATURES)
     found[ROOT], found[PLACES], found[CONTACTS] = weights.root, weights.places, weights.contacts
     found[TURNS.start : TURNS.start + 6] = weights.heading
-    return found
+    return found.to(device)
 
 
-def _joint_weights(weights: LossWeights) -> Tensor:
+@cache
+def _joint_weights(weights: LossWeights, device: str) -> Tensor:
     found = torch.tensor([weights.telling if name in TELLING else 1.0 for name in JOINTS])
-    return found / found.mean()
+    return (found / found.mean()).to(device)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -52,9 +52,7 @@ class NoiseSchedule:
 
     def noised(self, clean: Tensor, noise: Tensor, steps: Tensor) -> Tensor:
         """x_t of windows (B, T, F) at steps (B,): q(x_t | x) of Ho et al. 2020, Eq. 4."""
-        import torch
-
-        left = torch.from_numpy(self.alpha_bars).to(clean)[steps][:, None, None]
+        left = _left(self, str(clean.device))[steps][:, None, None].to(clean)
         return left.sqrt() * clean + (1 - left).sqrt() * noise
 
     def spaced(self, count: int) -> tuple[int, ...]:
@@ -62,6 +60,14 @@ class NoiseSchedule:
         if not 1 <= count <= self.steps:
             raise ValueError(f"sampling takes 1 to {self.steps} steps, not {count}")
         return tuple(np.unique(np.linspace(0, self.steps - 1, count).round().astype(int))[::-1].tolist())
+
+
+@cache
+def _left(schedule: NoiseSchedule, device: str) -> Tensor:
+    """A schedule's `alpha_bars` on a device."""
+    import torch
+
+    return torch.from_numpy(schedule.alpha_bars).to(device)
 
 
 def ddpm_step(schedule: NoiseSchedule, x: Tensor, clean: Tensor, step: int, noise: Tensor) -> Tensor:

@@ -62,6 +62,8 @@ SAMPLED: Final = 2048
 """Windows that mean and deviation are taken from."""
 STEP: Final = "step"
 """How far a run has come, among its tensors."""
+CHECKED: Final = 50
+"""Steps on a GPU after which it is asked whether all losses were finite; it is waited for then."""
 MAX_NORM: Final = 1.0
 """Of a gradient."""
 MOMENTS: Final = (0.9, 0.999)
@@ -93,13 +95,20 @@ class TrainConfig:
     facing_dropped: float = 0.5
     """How often a walk is not told where to face."""
     save_every: int = 500
+    seconds: float | None = None
+    """After which training ends by the clock, with its rate at the end of the cosine, however few steps were done:
+    for a machine that is rented. None: by steps alone, which gives the same bytes again."""
     seed: int = 0
     losses: LossWeights = field(default_factory=LossWeights)
     noise: NoiseSchedule = field(default_factory=NoiseSchedule)
 
-    def rate_at(self, step: int) -> float:
+    def done(self, step: int, elapsed: float = 0.0) -> float:
+        """How much of training is over after so many steps and seconds, from 0 to 1."""
+        return min(1.0, max(step / self.steps, 0.0 if self.seconds is None else elapsed / self.seconds))
+
+    def rate_at(self, step: int, elapsed: float = 0.0) -> float:
         """Of Adam, warmed up and then along a cosine."""
-        cosine = 0.5 * (1 + math.cos(math.pi * min(step / self.steps, 1.0)))
+        cosine = 0.5 * (1 + math.cos(math.pi * self.done(step, elapsed)))
         return self.rate * min(1.0, (step + 1) / max(self.warmup, 1)) * (self.final + (1 - self.final) * cosine)
 
     def to_dict(self) -> dict[str, Any]:
@@ -119,8 +128,9 @@ class Adam:
         """Go along the gradients, whose norm is cut at `MAX_NORM`; `number` counts from 1."""
         gradients = [one.grad if one.grad is not None else torch.zeros_like(one) for one in self.parameters]
         with torch.no_grad():
-            norm = torch.stack([one.square().sum() for one in gradients]).sum().sqrt()
-            torch._foreach_mul_(gradients, float(min(1.0, MAX_NORM / (float(norm) + 1e-6))))
+            norm = torch.stack(torch._foreach_norm(gradients)).norm()
+            # A number would be waited for in every step where a GPU works it out.
+            torch._foreach_mul_(gradients, (MAX_NORM / (norm + 1e-6)).clamp(max=1.0))
             torch._foreach_lerp_(self.means, gradients, 1 - MOMENTS[0])
             torch._foreach_mul_(self.squares, MOMENTS[1])
             torch._foreach_addcmul_(self.squares, gradients, gradients, 1 - MOMENTS[1])
@@ -143,6 +153,8 @@ class Run:
     step: int = 0
     seconds: float = 0.0
     """Of one core's time."""
+    elapsed: float = 0.0
+    """By the clock, checkpoints not counted."""
     curve: list[dict[str, float]] = field(default_factory=list)
     gaits: int = 0
     """Of how many people's walks are told apart."""
@@ -163,7 +175,8 @@ class Learner:
 
     kind: str
     network: nn.Module
-    loss: Callable[[Run, Batch, np.random.Generator], tuple[Tensor, dict[str, float]]]
+    loss: Callable[[Run, Batch, np.random.Generator], tuple[Tensor, dict[str, Tensor]]]
+    """And figures for the curve, which stay where they were worked out until they are asked for."""
     sizes: Mapping[str, Any]
 
 
@@ -172,19 +185,21 @@ def denoiser_learner(sizes: DenoiserSizes, config: TrainConfig, device: str = "c
     torch.manual_seed(config.seed)
     network, kinematics = Denoiser(sizes).to(device), Kinematics(device)
 
-    def loss(run: Run, batch: Batch, rng: np.random.Generator) -> tuple[Tensor, dict[str, float]]:
-        given = dropped(batch, config, rng).to(device)
-        clean = run.scale.encode(batch.windows.to(device))
-        noise = torch.from_numpy(rng.standard_normal(clean.shape, dtype=np.float32)).to(device)
-        steps = torch.from_numpy(rng.integers(config.noise.steps, size=len(clean))).to(device)
+    def loss(run: Run, batch: Batch, rng: np.random.Generator) -> tuple[Tensor, dict[str, Tensor]]:
+        # What is drawn on the device, by dropout too, follows from the step alone, as all else does.
+        torch.manual_seed(int(rng.integers(1 << 62)))
+        given = dropped(batch, config, rng)
+        clean = run.scale.encode(batch.windows)
+        noise = torch.randn_like(clean)
+        steps = torch.randint(config.noise.steps, (len(clean),), device=clean.device)
         noised = config.noise.noised(clean, noise, steps)
-        share = config.history_noise * torch.from_numpy(rng.random((len(clean), 1, 1), dtype=np.float32)).to(device)
+        share = config.history_noise * torch.rand((len(clean), 1, 1), device=clean.device)
         # The history is never diffused; it is disturbed a little, as what was sampled before is not perfect.
         noised = torch.cat([clean[:, :HISTORY] + share * noise[:, :HISTORY], noised[:, HISTORY:]], dim=1)
-        with torch.autocast(device, torch.bfloat16, enabled=device != "cpu"):
+        with torch.autocast(clean.device.type, torch.bfloat16, enabled=clean.device.type != "cpu"):
             guess = network(noised, steps, network.encode(given))
         found = losses(guess.float(), clean, run.scale, kinematics, config.losses)
-        return found.total(config.losses), found.numbers()
+        return found.total(config.losses), found.told()
 
     return Learner("denoiser", network, loss, sizes.to_dict())
 
@@ -194,15 +209,15 @@ def scheduler_learner(sizes: SchedulerSizes, config: TrainConfig, device: str = 
     torch.manual_seed(config.seed)
     network = CompletionScheduler(sizes).to(device)
 
-    def loss(run: Run, batch: Batch, rng: np.random.Generator) -> tuple[Tensor, dict[str, float]]:
+    def loss(run: Run, batch: Batch, rng: np.random.Generator) -> tuple[Tensor, dict[str, Tensor]]:
+        torch.manual_seed(int(rng.integers(1 << 62)))
         clean = run.scale.encode(batch.windows)
-        noise = torch.from_numpy(rng.standard_normal(clean.shape, dtype=np.float32))
-        seen = (clean + config.history_noise * noise).to(device)
-        logits = network.logits(seen, batch.given.text.to(device), batch.given.frame.to(device))
-        wanted = batch.over.float().to(device)
+        seen = clean + config.history_noise * torch.randn_like(clean)
+        logits = network.logits(seen, batch.given.text, batch.given.frame)
+        wanted = batch.over.float()
         found = torch.nn.functional.binary_cross_entropy_with_logits(logits, wanted)
         right = ((logits > 0) == (wanted > 0.5)).float().mean()
-        return found, {"cross_entropy": float(found.detach()), "right": float(right)}
+        return found, {"cross_entropy": found.detach(), "right": right}
 
     return Learner("scheduler", network, loss, sizes.to_dict())
 
@@ -210,22 +225,21 @@ def scheduler_learner(sizes: SchedulerSizes, config: TrainConfig, device: str = 
 def dropped(batch: Batch, config: TrainConfig, rng: np.random.Generator) -> Conditions:
     """The conditions of a batch, some of them not told."""
     given, count = batch.given, len(batch.windows)
-
-    def kept(share: float) -> Tensor:
-        return torch.from_numpy(rng.random(count) >= share)
-
-    pelvis = given.pelvis.clone()
-    untold = batch.periodic & ~kept(config.facing_dropped)
-    pelvis[untold, 3:5], pelvis[untold, 6] = 0.0, 0.0
+    drawn = torch.from_numpy(rng.random((7, count), dtype=np.float32)).to(batch.windows.device)
+    facing, *kept = (drawn[:1] < config.facing_dropped, *(drawn[1:] >= config.dropped))
+    text, pelvis, hand, scene, made_of, gait = kept
+    untold = (batch.periodic & facing[0])[:, None]
+    told = torch.cat([given.pelvis[:, :3], given.pelvis[:, 3:5] * ~untold, given.pelvis[:, 5:6],
+                      given.pelvis[:, 6:7] * ~untold, given.pelvis[:, 7:]], dim=1)  # fmt: skip
     return replace(
         given,
-        has_text=given.has_text * kept(config.dropped),
-        has_pelvis=given.has_pelvis * kept(config.dropped),
-        has_hand=given.has_hand * kept(config.dropped),
-        has_scene=None if given.has_scene is None else given.has_scene * kept(config.dropped),
-        made_of=given.made_of * kept(config.dropped),
-        gait=given.gait * kept(config.dropped),
-        pelvis=pelvis,
+        has_text=given.has_text * text,
+        has_pelvis=given.has_pelvis * pelvis,
+        has_hand=given.has_hand * hand,
+        has_scene=None if given.has_scene is None else given.has_scene * scene,
+        made_of=given.made_of * made_of,
+        gait=given.gait * gait,
+        pelvis=told,
     )
 
 
@@ -257,20 +271,27 @@ def train(
     folder.mkdir(parents=True, exist_ok=True)
     run = _begun(learner, bank, windows, config, folder, start)
     with _repeatable(run.device):
-        _steps(learner, bank, windows, config, folder, run, at_checkpoint)
+        _steps(learner, bank.on(str(run.device)), windows, config, folder, run, at_checkpoint)
     return averaged(learner, run, config)
 
 
 @contextmanager
 def _repeatable(device: torch.device) -> Iterator[None]:
-    """On the CPU only what gives the same numbers each time; for a GPU whatever its user has set."""
+    """On the CPU only what gives the same numbers each time; on a GPU what is quick, products in 19 bits.
+
+    What is drawn by chance is the same there too; sums may come in another order.
+    """
     before, warns = torch.are_deterministic_algorithms_enabled(), torch.is_deterministic_algorithms_warn_only_enabled()
+    precision = torch.get_float32_matmul_precision()
     if device.type == "cpu":
         torch.use_deterministic_algorithms(True)
+    else:
+        torch.set_float32_matmul_precision("high")
     try:
         yield
     finally:
         torch.use_deterministic_algorithms(before, warn_only=warns)
+        torch.set_float32_matmul_precision(precision)
 
 
 def _steps(
@@ -283,24 +304,35 @@ def _steps(
     at_checkpoint: Callable[[Run, Weights], Mapping[str, float]],
 ) -> None:
     """All steps that a run has not done yet."""
-    recent: list[dict[str, float]] = []
+    recent: list[dict[str, Tensor]] = []
+    checked = 1 if run.device.type == "cpu" else CHECKED
+    bad = torch.full((), -1, device=run.device)
+    begun, watch = time.process_time(), time.perf_counter()
     learner.network.train()
-    while run.step < config.steps:
-        begun = time.process_time()
-        rng = np.random.default_rng([config.seed, 2, run.step])
-        starts, rows = windows.drawn(config.batch, rng)
-        batch = bank.batch(starts, rows, rng.random(config.batch) < 0.5)
+    while config.done(run.step, run.elapsed) < 1:
+        batch, rng = _drawn(bank, windows, config, run.step)
         loss, told = learner.loss(run, batch, rng)
-        if not bool(torch.isfinite(loss)):
-            raise _not_finite(run, batch, folder)
+        bad = torch.where((bad < 0) & ~torch.isfinite(loss.detach()), run.step, bad)
+        due = (run.step + 1) % config.save_every == 0 or config.done(run.step + 1, run.elapsed) == 1
+        if (due or run.step % checked == 0) and int(bad) >= 0:
+            raise _not_finite(int(bad), _drawn(bank, windows, config, int(bad))[0], folder)
         _stepped(run, loss, config)
         recent.append(told)
-        run.seconds += time.process_time() - begun
-        if run.step % config.save_every == 0 or run.step == config.steps:
-            means = {name: float(np.mean([one[name] for one in recent])) for name in recent[0]}
+        run.seconds, begun = run.seconds + time.process_time() - begun, time.process_time()
+        run.elapsed, watch = run.elapsed + time.perf_counter() - watch, time.perf_counter()
+        if due or config.done(run.step, run.elapsed) == 1:
+            means = {name: float(torch.stack([one[name] for one in recent]).mean()) for name in recent[0]}
             recent = []
             _checkpointed(learner, run, config, folder, means, at_checkpoint)
             learner.network.train()
+            begun, watch = time.process_time(), time.perf_counter()
+
+
+def _drawn(bank: WindowBank, windows: Windows, config: TrainConfig, step: int) -> tuple[Batch, np.random.Generator]:
+    """What a step learns from, and what goes on being drawn from in it."""
+    rng = np.random.default_rng([config.seed, 2, step])
+    starts, rows = windows.drawn(config.batch, rng)
+    return bank.batch(starts, rows, rng.random(config.batch) < 0.5), rng
 
 
 def averaged(learner: Learner, run: Run, config: TrainConfig) -> Weights:
@@ -348,7 +380,7 @@ def _begun(
     scale = Scale(tensors[MEAN], tensors[DEVIATION])
     # The tensors are written first: they say how far it came where it was broken off between the two.
     step = int(tensors[STEP])
-    done = (step, row["seconds"], [one for one in row["curve"] if one["step"] <= step])
+    done = (step, row["seconds"], row["elapsed"], [one for one in row["curve"] if one["step"] <= step])
     average = _under("average.", tensors)
     return Run(learner.network, average, scale, optimizer, *done, told=told, **people)
 
@@ -369,12 +401,12 @@ def _told(
 
 def _stepped(run: Run, loss: Tensor, config: TrainConfig) -> None:
     loss.backward()
-    run.optimizer.step(config.rate_at(run.step), run.step + 1)
+    run.optimizer.step(config.rate_at(run.step, run.elapsed), run.step + 1)
     run.step += 1
     follow = 1 - min(config.average, (1 + run.step) / (10 + run.step))
+    now = run.network.state_dict()
     with torch.no_grad():
-        for name, tensor in run.network.state_dict().items():
-            run.average[name].lerp_(tensor, follow)
+        torch._foreach_lerp_([run.average[name] for name in now], list(now.values()), follow)
 
 
 def _checkpointed(
@@ -388,14 +420,14 @@ def _checkpointed(
     """The run as it is, and its averaged weights by their step; the last two are what a run goes on from."""
     weights = averaged(learner, run, config)
     save_weights(weights, folder / f"step{run.step:06d}")
-    run.curve.append({"step": run.step, "core_seconds": run.seconds, **means})
+    run.curve.append({"step": run.step, "core_seconds": run.seconds, "elapsed": run.elapsed, **means})
     run.curve[-1] |= at_checkpoint(run, weights)
     tensors = {f"network.{name}": tensor for name, tensor in run.network.state_dict().items()}
     tensors |= {f"average.{name}": tensor for name, tensor in run.average.items()}
     tensors |= _optimizer_tensors(run.optimizer) | {MEAN: run.scale.mean, DEVIATION: run.scale.deviation}
     tensors[STEP] = torch.tensor(run.step)
     save_file({name: tensor.detach().cpu().contiguous() for name, tensor in tensors.items()}, folder / "run.part")
-    row = {"told": run.told, "step": run.step, "seconds": run.seconds, "curve": run.curve}
+    row = {"told": run.told, "step": run.step, "seconds": run.seconds, "elapsed": run.elapsed, "curve": run.curve}
     (folder / "run.part").replace(folder / "run.safetensors")
     (folder / "run.part").write_text(json.dumps(row, indent=1), encoding="utf-8")
     (folder / "run.part").replace(folder / "run.json")
@@ -410,9 +442,9 @@ def _under(prefix: str, tensors: Mapping[str, Tensor]) -> dict[str, Tensor]:
     return {name.removeprefix(prefix): tensor for name, tensor in tensors.items() if name.startswith(prefix)}
 
 
-def _not_finite(run: Run, batch: Batch, folder: Path) -> TrainingError:
-    save_file({"windows": batch.windows.contiguous()}, folder / "bad_batch.safetensors")
+def _not_finite(step: int, batch: Batch, folder: Path) -> TrainingError:
+    save_file({"windows": batch.windows.cpu().contiguous()}, folder / "bad_batch.safetensors")
     return TrainingError(
-        f"step {run.step}: the loss is not finite; its batch is in {folder / 'bad_batch.safetensors'}",
+        f"step {step}: the loss is not finite; its batch is in {folder / 'bad_batch.safetensors'}",
         "the last good weights are kept; look at the batch, or lower the rate",
     )

@@ -25,9 +25,9 @@ def mlp(inputs: int, width: int) -> nn.Sequential:
 class Layer(nn.Module):  # type: ignore[misc]
     """Self-attention and a two-layer network, normalised after each as printed, or before each, which learns faster."""
 
-    def __init__(self, width: int, heads: int, hidden: int, norm_first: bool) -> None:
+    def __init__(self, width: int, heads: int, hidden: int, norm_first: bool, dropout: float = 0.0) -> None:
         super().__init__()
-        self.heads, self.norm_first = heads, norm_first
+        self.heads, self.norm_first, self.dropout = heads, norm_first, nn.Dropout(dropout)
         self.queries_keys_values, self.joined = nn.Linear(width, 3 * width), nn.Linear(width, width)
         self.wider, self.narrower = nn.Linear(width, hidden), nn.Linear(hidden, width)
         self.first_norm, self.second_norm = nn.LayerNorm(width), nn.LayerNorm(width)
@@ -45,20 +45,22 @@ class Layer(nn.Module):  # type: ignore[misc]
         split = self.queries_keys_values(x).view(batch, tokens, 3, self.heads, width // self.heads)
         queries, keys, values = split.permute(2, 0, 3, 1, 4)  # (batch, heads, tokens, width / heads) each
         found = functional.scaled_dot_product_attention(queries, keys, values)
-        return self.joined(found.transpose(1, 2).reshape(batch, tokens, width))
+        return self.dropout(self.joined(found.transpose(1, 2).reshape(batch, tokens, width)))
 
     def _mixed(self, x: Tensor) -> Tensor:
-        return self.narrower(functional.gelu(self.wider(x), approximate="tanh"))
+        return self.dropout(self.narrower(functional.gelu(self.wider(x), approximate="tanh")))
 
 
 class Encoder(nn.Module):  # type: ignore[misc]
     """Layer after layer; those that normalise first end in one more normalisation."""
 
-    def __init__(self, layers: int, width: int, heads: int, hidden: int, norm_first: bool) -> None:
+    def __init__(
+        self, layers: int, width: int, heads: int, hidden: int, norm_first: bool, dropout: float = 0.0
+    ) -> None:
         super().__init__()
         if width % heads or width % 2:
             raise ValueError(f"width {width} is not even or cannot be shared by {heads} heads")
-        self.layers = nn.ModuleList([Layer(width, heads, hidden, norm_first) for _ in range(layers)])
+        self.layers = nn.ModuleList([Layer(width, heads, hidden, norm_first, dropout) for _ in range(layers)])
         self.norm = nn.LayerNorm(width) if norm_first else nn.Identity()
 
     def forward(self, x: Tensor) -> Tensor:

@@ -6,9 +6,10 @@ belongs to. Half of all windows are seen in a mirror, words and goals with them.
 
 from __future__ import annotations
 
+import copy
 import zlib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -21,14 +22,12 @@ from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.conditions import GAITS, MAX_SECONDS, TIME_UNIT, Conditions, MadeOf
 from motion_backend.diffusion.dataset import PERIODIC, Passage, Stretch
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, quat_to_six, twist
-from motion_backend.diffusion.scene_encoder import voxel_image
+from motion_backend.diffusion.room_voxels import RoomVoxels
 from motion_backend.mocap.augmentation import SWAPPED, mirror_words
 from motion_backend.mocap.clip import ClipError
 from motion_backend.motion import FPS
 from motion_backend.rotations import Array
-from motion_backend.scene import Scene
 from motion_backend.skeleton import INDEX, build_skeleton
-from scene_graphs.geometry.occupancy_grid import occupancy_pair
 from scene_graphs.home import home_from_layouts
 from scene_graphs.layout_library import built_in_index
 
@@ -102,7 +101,26 @@ class WindowBank:
         self._skeleton = build_skeleton()
         self._lay_out_frames()
         self._lay_out_passages(encode)
-        self._scenes: dict[str, Scene] | None = {} if scenes else None
+        self._level = _tensor([1.0, 0.0, 1.0])
+        self._mirrored, self._signs = mirrored_features()
+        self._pelvis_signs = _tensor([-1.0, 1, 1, -1, 1, 1, 1, 1, 1])
+        self._hand_signs = _tensor([-1.0, 1, 1, -1])
+        self._sees = scenes
+
+    @property
+    def device(self) -> torch.device:
+        """Where its tensors are, and batches are made."""
+        return self._roots.device
+
+    def on(self, device: str) -> WindowBank:
+        """The same on another device, where its batches are made of what lies there."""
+        found = copy.copy(self)
+        for name, value in vars(self).items():
+            if isinstance(value, Tensor):
+                setattr(found, name, value.to(device))
+        if self._sees:
+            found._rooms = self._rooms.on(device)
+        return found
 
     def _lay_out_frames(self) -> None:
         lengths = [len(stretch) for stretch in self.stretches]
@@ -131,13 +149,16 @@ class WindowBank:
         self._held = torch.tensor([one is MadeOf.PROCEDURAL for one in made])
         self._low = torch.tensor([begins[i] for i, _ in rows])
         self._high = torch.tensor([begins[i + 1] - 1 for i, _ in rows])
+        self._room_names = sorted({stretch.room for stretch in self.stretches if stretch.room is not None})
+        numbers = {name: number for number, name in enumerate(self._room_names)}
+        self._room = torch.tensor([numbers.get(self.stretches[i].room or "", -1) for i, _ in rows])
         self._is_periodic = torch.tensor([p.kind in PERIODIC for _, p in rows])
         self._is_seat = torch.tensor([p.kind in SEATS for _, p in rows])
         self._is_lying = torch.tensor([p.kind is PartKind.LIE for _, p in rows])
         self._has_hand = torch.tensor([p.hand is not None for _, p in rows])
         self._hands = torch.tensor([p.hand or (0.0, 0.0, 0.0) for _, p in rows], dtype=torch.float32)
         self._sides = torch.tensor([1.0 if p.left else -1.0 for _, p in rows])
-        words = sorted({text for _, p in rows for text in (p.caption, mirror_words(p.caption))})
+        words = wordings(self.stretches)
         place = {text: index for index, text in enumerate(words)}
         self._texts = torch.from_numpy(np.asarray(encode(words), dtype=np.float32))
         self._text = torch.tensor([place[p.caption] for _, p in rows])
@@ -189,11 +210,11 @@ class WindowBank:
 
     def batch(self, starts: NDArray[np.int64], rows: NDArray[np.int64], flips: NDArray[np.bool_]) -> Batch:
         """Windows with their conditions; those with a flip are seen in a mirror."""
-        start, row, flip = torch.from_numpy(starts), torch.from_numpy(rows), torch.from_numpy(flips)
-        frames = start[:, None] + STRIDE * torch.arange(WINDOW)
+        start, row, flip = (torch.from_numpy(one).to(self.device) for one in (starts, rows, flips))
+        frames = start[:, None] + STRIDE * torch.arange(WINDOW, device=self.device)
         top = torch.where(self._held[row], self._last[row], self._high[row])
         frames = torch.minimum(torch.maximum(frames, self._low[row][:, None]), top[:, None])  # (B, 16)
-        yaw, origin = self._yaws[frames[:, _OFFSET]], self._roots[frames[:, _OFFSET]] * _tensor([1.0, 0.0, 1.0])
+        yaw, origin = self._yaws[frames[:, _OFFSET]], self._roots[frames[:, _OFFSET]] * self._level
         periodic = self._is_periodic[row]
         ends = torch.where(periodic, frames[:, -1], self._last[row])
         pelvis, has_pelvis = self._pelvis(row, ends, start, origin, yaw)
@@ -203,19 +224,29 @@ class WindowBank:
         text = self._texts[torch.where(flip, self._mirrored_text[row], self._text[row])]
         voxels, has_scene = self._voxels(row, ends, origin, yaw)
         windows = self._features(frames, origin, yaw)
+        everybody = torch.ones(len(start), device=self.device)
         given = Conditions(
-            text, torch.ones(len(start)), frame, self._made_of[row].clone(), self._gait[row].clone(),
-            pelvis, has_pelvis, hand * has_hand[:, None], has_hand, voxels, has_scene,
+            text, everybody, frame, self._made_of[row].clone(), self._gait[row].clone(), pelvis, has_pelvis,
+            hand * has_hand[:, None], has_hand, voxels, has_scene,
         )  # fmt: skip
-        _mirror(windows, given, flip)
+        windows, given = self._flipped(windows, given, flip)
         over = ~periodic & (start + SPAN >= self._reached[row])
         return Batch(windows, given, periodic, over)
+
+    def _flipped(self, windows: Tensor, given: Conditions, flip: Tensor) -> tuple[Tensor, Conditions]:
+        """Features, goals and voxels of some windows as seen in a mirror at x = 0; words are mirrored already."""
+        windows = torch.where(flip[:, None, None], windows[..., self._mirrored] * self._signs, windows)
+        pelvis = torch.where(flip[:, None], given.pelvis * self._pelvis_signs, given.pelvis)
+        hand, voxels = torch.where(flip[:, None], given.hand * self._hand_signs, given.hand), given.voxels
+        if voxels is not None:
+            voxels = torch.where(flip[:, None, None, None], voxels.flip(2), voxels)
+        return windows, replace(given, pelvis=pelvis, hand=hand, voxels=voxels)
 
     def _features(self, frames: Tensor, origin: Tensor, yaw: Tensor) -> Tensor:
         """As `to_features` has them. (B, 16, 202)."""
         roots, six = self._roots[frames], self._six[frames].float()
         frame_yaw = yaw[:, None].expand(frames.shape)
-        under = roots * _tensor([1.0, 0.0, 1.0])
+        under = roots * self._level
         places = turned(self._places[frames] - under[:, :, None], frame_yaw[..., None].expand(*frames.shape, 22))
         six[:, :, 0, :3] = turned(six[:, :, 0, :3], frame_yaw)
         six[:, :, 0, 3:] = turned(six[:, :, 0, 3:], frame_yaw)
@@ -234,30 +265,25 @@ class WindowBank:
             place[:, 0] * placed, place[:, 2] * placed, place[:, 1] * seat, facing.sin() * placed,
             facing.cos() * placed, seat, placed, left * timed, timed,
         )  # fmt: skip
-        return torch.stack(columns, dim=-1), torch.ones(len(row))
+        return torch.stack(columns, dim=-1), torch.ones(len(row), device=self.device)
 
     def _voxels(self, row: Tensor, ends: Tensor, origin: Tensor, yaw: Tensor) -> tuple[Tensor | None, Tensor | None]:
         """What stands around the bodies and their goals; None where scenes are not looked at."""
-        if self._scenes is None:
+        if not self._sees:
             return None, None
-        images, seen = np.zeros((len(row), 64, 32, 32), dtype=np.float32), torch.zeros(len(row))
-        for at, (owner, end) in enumerate(zip(row.tolist(), ends.tolist(), strict=True)):
-            room = self.stretches[self.passages[owner][0]].room
-            if room is None:
-                continue
-            here, there = origin[at].tolist(), self._roots[end].tolist()
-            walks = self.passages[owner][1].kind in PERIODIC
-            pair = occupancy_pair(
-                self._scene(room).heights, (here[0], here[2]), float(yaw[at]), (there[0], there[2]), walking=walks
-            )
-            images[at], seen[at] = voxel_image(pair), 1.0
-        return torch.from_numpy(images), seen
+        rooms, across = self._room[row], [0, 2]
+        seen = (rooms >= 0).float()
+        there = self._roots[ends]
+        images = self._rooms.images(
+            rooms.clamp(min=0), origin[:, across], there[:, across], yaw, self._is_periodic[row]
+        )
+        return images * seen[:, None, None, None], seen
 
-    def _scene(self, room: str) -> Scene:
-        assert self._scenes is not None
-        if room not in self._scenes:
-            self._scenes[room] = Scene(home_from_layouts([built_in_index().layout(room)], 0))
-        return self._scenes[room]
+    @cached_property
+    def _rooms(self) -> RoomVoxels:
+        """Those that something was acted in; one of any kind where nothing was."""
+        names = self._room_names or [built_in_index().layouts[0].id]
+        return RoomVoxels([home_from_layouts([built_in_index().layout(name)], 0) for name in names])
 
 
 def arrival(stretch: Stretch, passage: Passage) -> int:
@@ -276,6 +302,12 @@ def settled(roots: Array) -> int:
     """The frame from which on pelvises (T, 3) stay where they are in the end."""
     away = np.flatnonzero(np.linalg.norm(roots - roots[-1], axis=1) > THERE)
     return int(away[-1]) + 1 if len(away) else 0
+
+
+def wordings(stretches: Sequence[Stretch]) -> list[str]:
+    """All that is said in them, and what it is in the mirror."""
+    said = {passage.caption for stretch in stretches for passage in stretch.passages}
+    return sorted(said | {mirror_words(text) for text in said})
 
 
 def walker(stretch: Stretch) -> str:
@@ -312,21 +344,14 @@ def turned(points: Tensor, yaw: Tensor) -> Tensor:
     return torch.stack([cos * x - sin * z, y, sin * x + cos * z], dim=-1)
 
 
-def _mirror(windows: Tensor, given: Conditions, flip: Tensor) -> None:
-    """Features, goals and voxels of some windows as seen in a mirror at x = 0, in place; words are mirrored already."""
-    if not flip.any():
-        return
-    count = int(flip.sum())
-    six = windows[flip, :, 3:135].reshape(count, WINDOW, 22, 6)[:, :, SWAPPED] * _tensor([1.0, -1, -1, -1, 1, 1])
-    places = windows[flip, :, 135:198].reshape(count, WINDOW, 21, 3)[:, :, [j - 1 for j in SWAPPED[1:]]]
-    root = windows[flip, :, :3] * _tensor([-1.0, 1, 1])
-    contacts = windows[flip, :, 198:][:, :, [2, 3, 0, 1]]
-    places = places * _tensor([-1.0, 1, 1])
-    windows[flip] = torch.cat([root, six.flatten(2), places.flatten(2), contacts], dim=-1)
-    given.pelvis[flip] *= _tensor([-1.0, 1, 1, -1, 1, 1, 1, 1, 1])
-    given.hand[flip] *= _tensor([-1.0, 1, 1, -1])
-    if given.voxels is not None:
-        given.voxels[flip] = given.voxels[flip].flip(2)
+def mirrored_features() -> tuple[Tensor, Tensor]:
+    """From where each feature comes that is seen in a mirror at x = 0, and its sign there. (202,) each."""
+    six = 3 + 6 * np.asarray(SWAPPED)[:, None] + np.arange(6)
+    places = 135 + 3 * (np.asarray(SWAPPED[1:])[:, None] - 1) + np.arange(3)
+    order = np.concatenate([np.arange(3), six.ravel(), places.ravel(), 198 + np.array([2, 3, 0, 1])])
+    across = np.array([-1.0, 1.0, 1.0])
+    signs = np.concatenate([across, np.tile([1.0, -1, -1, -1, 1, 1], 22), np.tile(across, 21), np.ones(4)])
+    return torch.from_numpy(order), _tensor(signs)
 
 
 def _tensor(values: object) -> Tensor:

@@ -57,6 +57,9 @@ SOLE: Final = ((0.0, -0.044, 0.041), (0.045, 0.022, 0.088))
 """Centre and half sizes of the box a foot stands on, from heel to ball, in the ankle's frame (metres at 1.70 m)."""
 TOES: Final = ((-0.03, -0.011, 0.045), (0.03, -0.011, 0.045), 0.02)
 """Ends and radius of the bar of toes before the ball, in the toe joint's frame (metres at 1.70 m)."""
+FLESH: Final = 'priority="1" friction="1 .05 .05" solref=".06 1" solimp=".2 .9 .025"'
+"""How all of a body but its feet gives: by a centimetre or two under its weight, as flesh and clothes on a floor do. A
+rigid one strikes and lets go: getting down to a floor and up from it shook twice as much."""
 TOE_SHARE: Final = 0.0025
 """Of the mass; the foot's own segment has toes and all."""
 SOLE_POINTS: Final = np.array([[x, -ANKLE_HEIGHT, z] for z in (-0.033, 0.115) for x in (-0.025, 0.025)])
@@ -200,7 +203,7 @@ class _Body:
         up = self.skeleton.offsets[INDEX[joint]] if joint else np.zeros(3)
         start, end = (np.array(point) * self.scale + up for point in (capsule.start, capsule.end))
         size = f"{capsule.radius * self.scale:.6g}"
-        return f'<geom name="{name}" class="body" type="capsule" fromto="{numbers(start, end)}" size="{size}"/>'
+        return f'<geom name="{name}" class="body" type="capsule" fromto="{numbers(start, end)}" size="{size}" {FLESH}/>'
 
     def sole(self, side: str) -> str:
         centre, half = (numbers(np.array(one) * self.scale) for one in SOLE)

@@ -28,8 +28,9 @@ THIN: Final = 0.004
 """The least half size of a box (metres): MuJoCo takes none of zero."""
 CUSHION: Final = (0.3, 0.8, 0.17)
 """Tops of what gives under a body, from and to, and the least half width (metres): seats and mattresses."""
-GIVES: Final = 'solref=".06 1" solimp=".1 .9 .06" priority="1"'
-"""How it gives: some 3 cm under a body. A rigid one throws thighs off that lie in it by as much in the plan."""
+GIVES: Final = 'solref=".06 1" solimp=".1 .9 .06" priority="2"'
+"""How it gives, whatever lies on it: some 3 cm under a body. A rigid one throws thighs off that lie in it by as much in
+the plan."""
 STEP: Final = 1 / 120
 """Seconds of a simulated step; four make a frame. At 1/60 feet slide three times as fast."""
 COARSE_STEP: Final = 1 / 60

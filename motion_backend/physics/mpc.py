@@ -47,6 +47,9 @@ OFFSET: Final = 4.0
 """Price of a control away from the plan's, per rad²."""
 CHANGE: Final = 60.0
 """Price of the change of that from frame to frame, per rad²: feet slide a third as fast with it."""
+CHANGE_ON_FLOOR: Final = 240.0
+"""The same where the body goes down to lie, lies, or gets up from the floor: more than its feet touches something."""
+ON_FLOOR: Final = (Doing.GOES_DOWN, Doing.LIES, Doing.RISES)
 SLIDING: Final = 10.0
 """Price of the velocity of sole points that the plan has planted, per (m/s)². Prices on their places make falls."""
 MOST_OFFSET: Final = 0.5
@@ -83,6 +86,8 @@ PRICES_PELVIS: Final[Array] = PRICES * np.repeat([10.0, 1.0, 5.0, 1.0], [6, NV -
 """The same where the pelvis comes first. Where the body gets up from the floor, joints that are as planned are worth
 nothing if the pelvis stays down, since hands and knees that are not where they should be carry nothing. Where it lies
 down, the whole body would come to lie to one side of its place; where it stands up from its knees quickly, it fell."""
+PRICES_GOING_DOWN: Final[Array] = PRICES * np.repeat([3.0, 1.0, 3.0, 1.0], [6, NV - 6, 6, NV - 6])
+"""The same on its way down to lie: with ten times as much it shakes."""
 PRICES_WALKING: Final[Array] = PRICES * np.where(np.arange(NX) == 1, 10.0, 1.0)
 """The same where it walks: the height of the pelvis counts ten times as much, since it sank by a centimetre and feet
 hung as much lower."""
@@ -188,7 +193,8 @@ class Controller:
             off = self.difference(data, self._planned(at + index + 1))
             weight = AT_THE_END if index + 1 == len(offsets) else 1.0
             cost += weight * float(self._prices(at + index + 1) @ (off * off)) + OFFSET * float(offset @ offset)
-            cost += CHANGE * float((offset - before) @ (offset - before)) + self._sliding(at + index + 1)
+            cost += self._change(at + index + 1) * float((offset - before) @ (offset - before))
+            cost += self._sliding(at + index + 1)
             played[index] = before = offset
             if not np.isfinite(cost):
                 return Roll(np.inf, states, played)
@@ -224,12 +230,17 @@ class Controller:
 
     def _prices(self, at: int) -> Array:
         match self.reference.doing[at]:
+            case Doing.GOES_DOWN:
+                return PRICES_GOING_DOWN
             case Doing.LIES | Doing.RISES | Doing.STANDS_UP:
                 return PRICES_PELVIS
             case Doing.WALKS:
                 stands = self.reference.planted[at].reshape(2, 2).any(axis=1)
                 return PRICES_SWINGING[int(stands.argmin())] if stands.sum() == 1 else PRICES_WALKING
         return PRICES
+
+    def _change(self, at: int) -> float:
+        return CHANGE_ON_FLOOR if self.reference.doing[at] in ON_FLOOR else CHANGE
 
     def _planned(self, at: int) -> State:
         return State(self.reference.qpos[at], self.reference.qvel[at])
@@ -307,20 +318,20 @@ class Controller:
         for i in range(frames - 1, -1, -1):
             # Nothing but the control itself comes to be the last control: `onward` has rows for δx alone.
             onward, driven = np.concatenate([models[i].a, models[i].c], axis=1), np.concatenate([models[i].b, identity])
-            pushed, change = value @ driven, about.offsets[i] - before[i]
-            own = driven.T @ pushed + (OFFSET + CHANGE + REGULAR) * identity
+            pushed, change, price = value @ driven, about.offsets[i] - before[i], self._change(at + i + 1)
+            own = driven.T @ pushed + (OFFSET + price + REGULAR) * identity
             mixed = pushed[:NX].T @ onward
-            mixed[:, NX:] -= CHANGE * identity
-            steep = OFFSET * about.offsets[i] + CHANGE * change + driven.T @ slope
+            mixed[:, NX:] -= price * identity
+            steep = OFFSET * about.offsets[i] + price * change + driven.T @ slope
             solved = np.linalg.solve(own, np.column_stack([mixed, steep]))
             answer[i], add[i] = -solved[:, :-1], -solved[:, -1]
             hessian, gradient = self._stage(about.states[i], at + i, 1.0)
             slope = onward.T @ slope[:NX] + mixed.T @ add[i]
             slope[:NX] += gradient
-            slope[NX:] -= CHANGE * change
+            slope[NX:] -= price * change
             value = onward.T @ (value[:NX, :NX] @ onward) + mixed.T @ answer[i]
             value[:NX, :NX] += hessian
-            value[NX:, NX:] += CHANGE * identity
+            value[NX:, NX:] += price * identity
             value = (value + value.T) / 2
         return Gains(add, answer)
 

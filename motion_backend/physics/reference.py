@@ -46,11 +46,13 @@ class Doing(IntEnum):
     REACHES = 2
     """For something, with its hands."""
     LIES = 3
-    """Goes down to lie, or lies."""
+    """Lies down, or lies."""
     RISES = 4
     """Gets up from the floor, on hands and knees."""
     STANDS_UP = 5
     """From its knees."""
+    GOES_DOWN = 6
+    """To lie: onto its knees, or to the edge of a bed."""
 
 
 @dataclass(frozen=True)

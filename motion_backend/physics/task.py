@@ -33,7 +33,7 @@ LOW: Final = 0.35
 KNEES: Final = 0.2
 """A knee that is lower than this share of that carries the body. Before a seat both are twice as high or more."""
 DOING: Final = {
-    PhaseKind.WALK: Doing.WALKS, PhaseKind.TOUCH: Doing.REACHES, PhaseKind.EDGE: Doing.LIES,
+    PhaseKind.WALK: Doing.WALKS, PhaseKind.TOUCH: Doing.REACHES, PhaseKind.EDGE: Doing.GOES_DOWN,
     PhaseKind.LIEDOWN: Doing.LIES, PhaseKind.GETUP: Doing.RISES, PhaseKind.STANDUP: Doing.STANDS_UP,
 }  # fmt: skip
 """What is followed otherwise; getting up from a bed and from a seat are not."""

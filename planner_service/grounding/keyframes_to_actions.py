@@ -22,9 +22,17 @@ from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
+from planner_service.grounding.opening_places import (
+    LACKS,
+    Kind,
+    OpeningPlace,
+    comes_in,
+    entry,
+    opening_of,
+    opening_place,
+)
 from planner_service.grounding.seat_tables import done_at_tables
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
-from planner_service.grounding.window_places import NO_WINDOW, WindowPlace, at_window, window_place
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.script import Keyframe
@@ -165,7 +173,7 @@ def act(
     busy = done_at_tables(keyframes)
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         words_of_it = f"{keyframe.caption}; {said[index] if said else ''}"
-        stage.windows.append(at_window(keyframe.skill, words_of_it))
+        stage.openings.append(opening_of(keyframe.skill, words_of_it))
         stage.seated_for.append(busy[index] or keyframe.caption)
         before = keyframes[index - 1] if index else None
         if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
@@ -173,9 +181,12 @@ def act(
         else:  # who rises does so from what it rests on now
             drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
     aimed = [old is not None and not old.leads_elsewhere for old in known]
+    entered = entry(home, scene.walkable, places[0].room) if said and comes_in(said[0]) else None
+    drafts[:1] = [replace(one, begins=entered) for one in drafts[:1] if not one.already] or drafts[:1]
+    begins = entered[:2] if entered is not None else scene.beginning(seed)[0]
     hands = Hands()
     return tuple(hands.follow(action, done_in(keyframes[action.keyframe].caption))
-                 for action in stage.walks(drafts, places, scene.beginning(seed)[0], aimed))  # fmt: skip
+                 for action in stage.walks(drafts, places, begins, aimed))  # fmt: skip
 
 
 class _Stage:
@@ -191,8 +202,8 @@ class _Stage:
         self.resting: Spot | None = None
         self.on: Spot | None = None
         """What it sits or lies on still."""
-        self.windows: list[bool] = []
-        """Whether each keyframe so far asks for a window."""
+        self.openings: list[Kind | None] = []
+        """The window or door that each keyframe so far asks for."""
         self.seated_for: list[str] = []
         """The caption that a seat is chosen for: what needs a table, of all that is done on it."""
         self.elsewhere: set[int] = set()
@@ -206,11 +217,11 @@ class _Stage:
         action = Action(keyframe.skill, keyframe.caption, mood, keyframe.furniture, place.object_id, keyframe=index)
         if keyframe.skill in NEEDS:
             hand, spot = hand_of(keyframe.caption, default=free), self._spot(index, keyframe, mood, place)
-            window = self._window(index, place, reach=True) if keyframe.skill is Skill.TOUCH else None
-            if window is not None:
-                spot = window.spot(height_of(keyframe.caption), self.scale)
-            elif keyframe.skill is Skill.TOUCH and self.windows[index]:
-                action = replace(action, lacks=NO_WINDOW)
+            opening = self._opening(index, place) if keyframe.skill is Skill.TOUCH else None
+            if opening is not None:
+                spot = opening.spot(height_of(keyframe.caption), self.scale)
+            elif keyframe.skill is Skill.TOUCH and (kind := self._asked(index)) is not None:
+                action = replace(action, lacks=LACKS[kind])
             if keyframe.skill is Skill.TOUCH:
                 hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
                 self.elsewhere |= {index} if spot.object_id != place.object_id else set()
@@ -226,11 +237,13 @@ class _Stage:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
 
-    def _window(self, index: int, place: Place, reach: bool = False) -> WindowPlace | None:
-        """Where to stand before a window, if the keyframe asks for one and somebody gets there."""
-        if index >= len(self.windows) or not self.windows[index]:
-            return None
-        return window_place(self.home, self.walkable, place.room, self.at, reach)
+    def _asked(self, index: int) -> Kind | None:
+        return self.openings[index] if index < len(self.openings) else None
+
+    def _opening(self, index: int, place: Place) -> OpeningPlace | None:
+        """Where to stand to touch a window or door, if the keyframe asks for one and somebody gets there."""
+        kind = self._asked(index)
+        return kind and opening_place(self.home, self.walkable, kind, place.room, self.at, reach=True)
 
     def keep(self, index: int, old: Kept) -> Action:
         """An action as it was, the body left where that leaves it; how long it is held is reckoned anew."""
@@ -405,8 +418,9 @@ class _Stage:
     ) -> Action:
         """A walk with its goal; who stands still or waves has none."""
         wanders, at = place.object_id is None, leg.at
-        if wanders and stays(action.caption) and self.windows[action.keyframe]:
-            return self._looking_out(action, place, at)
+        kind = self.openings[action.keyframe] if wanders else None
+        if kind is not None and (kind == "door" or stays(action.caption)):
+            return self._before(kind, action, place, at)
         if wanders and action.goal is not None and (following is None or following.object_id != "floor"):
             return action  # where it wandered before is as good as anywhere
         ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
@@ -414,12 +428,13 @@ class _Stage:
             return replace(action, goal=ahead, facing=None)
         return action if wanders and stays(action.caption) else self._walk(action, following, place, leg)
 
-    def _looking_out(self, action: Action, place: Place, at: Point | None) -> Action:
-        """Who is to stand at a window goes there and looks out."""
-        found = window_place(self.home, self.walkable, place.room, at)
+    def _before(self, kind: Kind, action: Action, place: Place, at: Point | None) -> Action:
+        """Who is to stand at a window or to get to a door goes there, and who stays looks out."""
+        found = opening_place(self.home, self.walkable, kind, place.room, at)
         if found is None:
-            return replace(action, lacks=NO_WINDOW)
-        return replace(action, goal=found.standing, facing=found.facing, stands=LOOKS_OUT)
+            return replace(action, lacks=LACKS[kind])
+        stands = LOOKS_OUT if stays(action.caption) else 0.0
+        return replace(action, goal=found.standing, facing=found.facing, stands=stands)
 
     def _walk(self, action: Action, following: Action | None, place: Place, leg: _Leg) -> Action:
         same = following is not None and following.skill in NEEDS and following.object_id == action.object_id
@@ -527,6 +542,7 @@ def height_of(caption: str) -> str:
 def action_to_dict(action: Action) -> dict[str, Any]:
     """Plain values of an action for story.json."""
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    if not action.lacks:
-        del plain["lacks"]
+    for name in ("lacks", "begins"):
+        if not plain[name]:
+            del plain[name]
     return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}

@@ -1,4 +1,5 @@
-"""Chairs of a user's rooms that a table blocks: pulled out where somebody sits on them, and said."""
+"""Chairs that are moved for who sits on them, which is said: pulled out where a table blocks them in a user's room, and
+drawn up to the table for what is done at it."""
 
 from __future__ import annotations
 
@@ -9,7 +10,9 @@ from typing import Any, Final
 
 from planner_service.grounding.keyframes_to_actions import Place
 from planner_service.grounding.object_assignment import FLOOR, MissingError, Placing, StandIn, usable_offers
-from planner_service.scripts.script import LongScript
+from planner_service.grounding.seat_tables import done_at_tables
+from planner_service.scripts.script import Keyframe, LongScript
+from scene_graphs.affordances.chairs_at_tables import drawn_up
 from scene_graphs.affordances.usable_furniture import Pull, can_be_pulled, pulled, pulled_out
 from scene_graphs.graph.furniture_graph import offers
 from scene_graphs.graph.script_objects import Offers
@@ -46,6 +49,20 @@ def pull_out(home: Home, seats: Iterable[str]) -> tuple[Home, Pulls]:
             rooms[index] = replace(rooms[index], layout=pulled(rooms[index].layout, pull))
             pulls[index] = (*pulls.get(index, ()), pull)
     return replace(home, rooms=tuple(rooms)), pulls
+
+
+def draw_up(home: Home, keyframes: Sequence[Keyframe], places: Sequence[Place]) -> tuple[Home, Pulls]:
+    """The home with every chair at its table on which something is done that needs one, and the moves by room."""
+    busy = zip(done_at_tables(keyframes), places, strict=True)
+    rooms, moves = list(home.rooms), dict[int, tuple[Pull, ...]]()
+    for name in dict.fromkeys(place.object_id for caption, place in busy if caption and place.object_id):
+        number, _, object_id = name.partition("/")
+        index = int(number)
+        move = drawn_up(rooms[index].layout, object_id)
+        if move is not None:
+            rooms[index] = replace(rooms[index], layout=pulled(rooms[index].layout, move))
+            moves[index] = (*moves.get(index, ()), move)
+    return (replace(home, rooms=tuple(rooms)) if moves else home), moves
 
 
 @dataclass(frozen=True)

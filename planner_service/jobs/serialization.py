@@ -27,10 +27,14 @@ def furnished_to_dict(stage: Furnished) -> Json:
     return {
         "script": stage.script.model_dump(mode="json"),
         "home": home_to_dict(stage.home),
-        "matches": [asdict(match) | {"pulls": list(map(pull_to_dict, match.pulls))} for match in stage.matches],
+        "matches": [asdict(match) | _moves(match) for match in stage.matches],
         "places": [[place.room, place.object_id] for place in stage.places],
         "graphs": {room: graph_to_dict(graph) for room, graph in stage.graphs.items()},
     }
+
+
+def _moves(match: RoomMatch) -> Json:
+    return {"pulls": list(map(pull_to_dict, match.pulls)), "drawn_up": list(map(pull_to_dict, match.drawn_up))}
 
 
 def furnished_from_dict(row: Json) -> Furnished:
@@ -42,6 +46,7 @@ def furnished_from_dict(row: Json) -> Furnished:
             "missing": tuple(match["missing"]),
             # Stories of earlier versions have none.
             "pulls": tuple(map(pull_from_dict, match.get("pulls", ()))),
+            "drawn_up": tuple(map(pull_from_dict, match.get("drawn_up", ()))),
         }
         for match in row["matches"]
     )

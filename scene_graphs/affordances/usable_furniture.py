@@ -66,7 +66,7 @@ def pulled_out(layout: Layout, object_id: str) -> Pull | None:
     seat, check = layout.object(object_id), RoomCheck(layout)
     if not can_be_pulled(seat) or not (places := spots(seat, "sit")) or any(map(check.is_usable, places)):
         return None
-    return next((pull for pull in _promising(check, seat, places) if _helps(check, pull)), None)
+    return next((pull for pull in _promising(check, seat, places) if is_as_good(check, pull)), None)
 
 
 def pulled(layout: Layout, pull: Pull) -> Layout:
@@ -102,8 +102,8 @@ def _turned(ends: Array, yaws: Array, points: Array, seat: Placed) -> Array:
     return np.asarray(ends[:, None] + np.stack([straight * x + across * z, straight * z - across * x], axis=-1))
 
 
-def _helps(check: RoomCheck, pull: Pull) -> bool:
-    """Whether a body can sit there then, and nothing is the worse for it."""
+def is_as_good(check: RoomCheck, pull: Pull) -> bool:
+    """Whether a body can sit on a seat where a pull leaves it, and nothing in the room is the worse for it."""
     layout = pulled(check.layout, pull)
     seat, there = check.layout.object(pull.object_id), layout.object(pull.object_id)
     reach = hypot(seat.size[0], seat.size[2])

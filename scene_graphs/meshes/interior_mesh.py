@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
-from scene_graphs.home import Home, Wall
+from scene_graphs.home import HANDLE_HEIGHT, HANDLE_IN, Home, Wall
 from scene_graphs.layout import Array, Opening
 from scene_graphs.meshes import materials as m
 from scene_graphs.meshes.materials import Material
@@ -166,10 +166,11 @@ def _fill(home: Home, side: _Side, opening: Opening, name: str, room: int) -> It
     )
     if low > 0.1:
         yield from _window(side, (left, right), (low, high), name, _CURTAINS[room % len(_CURTAINS)])
-    elif not _leads_on(home, opening):
+    elif not home.leads_on(opening):
         yield _mesh(f"door leaf {name}", _LEAF, [side.box((left, right), (0.005, high), (0.012, 0.05))])
-        handle = [side.box((right - 0.2, right - 0.07), (0.99, 1.01), (-0.045, -0.03))]
-        handle.append(side.box((right - 0.09, right - 0.07), (0.985, 1.015), (-0.045, 0.012)))
+        grip, y = right - HANDLE_IN, HANDLE_HEIGHT
+        handle = [side.box((grip - 0.065, grip + 0.065), (y - 0.01, y + 0.01), (-0.045, -0.03))]
+        handle.append(side.box((grip + 0.045, grip + 0.065), (y - 0.015, y + 0.015), (-0.045, 0.012)))
         yield _mesh(f"door handle {name}", m.METAL, handle)
 
 
@@ -195,12 +196,6 @@ def _window(
             x, depth = begin + 0.07 * fold, -0.05 + 0.016 * (fold % 2)
             folds.append(side.box((x, x + 0.074), (low - 0.06, high + 0.11), (depth - 0.014, depth + 0.006)))
     yield _mesh(f"window curtain {name}", fabric, folds)
-
-
-def _leads_on(home: Home, opening: Opening) -> bool:
-    """Whether an opening is a side of a doorway to another room."""
-    middle = shapely.Point(np.mean(np.asarray(opening.segment), axis=0))
-    return any(shapely.LineString(doorway.segment).distance(middle) < 0.12 for doorway in home.doorways)
 
 
 def _planks(outline: Array) -> Iterator[tuple[int, Array]]:

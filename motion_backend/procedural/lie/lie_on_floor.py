@@ -56,6 +56,8 @@ SHIN_OUT, SHIN_UP = 0.30, 0.16
 """How far out and up the left shin points from its knee when the body is down beside it, against down the mat."""
 HOLDS: Final = -0.9
 """From so long before hands and knees on (against the time from there to the hip) the left knee keeps its place."""
+LANDS: Final = 0.2
+"""So many seconds before the right foot is down the weight begins to leave the left knee."""
 ON_THIGH, OVER_THIGH, FINGERS_IN = 0.25, 0.120, 0.5
 """A wrist on its thigh: from the hip along it, over its middle (metres at 1.70 m), fingers turned in (radians)."""
 ON_SIDE: Final = Lying(side="left", legs="gathered", arms=("tucked", "before"))
@@ -122,7 +124,9 @@ def kneel_down(start: Pose, mat: Mat, bearing: Bearing, keys: LieOnFloor) -> Pos
     both = _on_both_knees(two, start, mat)
     half = _on_one_knee(one, start, both, mat)
     left = _over_one_knee(over, half, mat)
-    down = interpolate(_times(keys.pose[:3], pace), [start, half, left, both], FPS)
+    *begun, knelt = _times(keys.pose[:3], pace)
+    lands = _seconds(keys.right_step, pace)[1] - LANDS * pace
+    down = interpolate([*begun, lands, knelt], [start, half, left, left, both], FPS)
     down = _step(down, 0, _seconds(keys.left_step, pace), half, mat)
     return _step(down, 1, _seconds(keys.right_step, pace), both, mat)
 

@@ -300,7 +300,7 @@ class StandingShown(BaseModel):
 
 
 class PullShown(BaseModel):
-    """A chair that stands pulled out from the start, since nobody could sit on it where the room had it."""
+    """A chair that stands elsewhere from the start than where the room had it."""
 
     object_id: str = Field(description="As in the room's own layout.")
     from_: StandingShown = Field(alias="from")
@@ -317,7 +317,8 @@ class RoomShown(BaseModel):
     exact: bool
     substitutions: list[SubstitutionShown]
     missing: list[str]
-    pulled_out: list[PullShown] = []
+    pulled_out: list[PullShown] = Field([], description="Chairs on which nobody could sit where they stood.")
+    drawn_up: list[PullShown] = Field([], description="Chairs set nearer to their table, for what is done at it.")
 
 
 class HomeShown(BaseModel):

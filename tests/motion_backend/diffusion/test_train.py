@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 import torch
 from numpy.typing import NDArray
 from sample_motions import tumbling
@@ -19,11 +20,13 @@ from motion_backend.diffusion.body_kinematics import Kinematics, told_joints
 from motion_backend.diffusion.checkpoint import CheckpointError, load_denoiser, save_weights
 from motion_backend.diffusion.completion_scheduler import SchedulerSizes
 from motion_backend.diffusion.conditions import MadeOf
-from motion_backend.diffusion.dataset import Passage, Stretch, read_stretches, write_stretches
+from motion_backend.diffusion.dataset import Passage, Stretch, read_sentences, read_stretches, write_stretches
 from motion_backend.diffusion.denoiser import DenoiserSizes
 from motion_backend.diffusion.losses import LossWeights, losses
 from motion_backend.diffusion.motion_features import HISTORY, HeadingFrame, Poses, to_features
+from motion_backend.diffusion.room_voxels import RoomVoxels
 from motion_backend.diffusion.sampler import Sampler, Scale
+from motion_backend.diffusion.scene_encoder import voxel_image
 from motion_backend.diffusion.train import (
     Adam,
     Learner,
@@ -35,11 +38,15 @@ from motion_backend.diffusion.train import (
     scheduler_learner,
     train,
 )
-from motion_backend.diffusion.windows import WindowBank, Windows
+from motion_backend.diffusion.windows import WindowBank, Windows, wordings
 from motion_backend.mocap.augmentation import mirror
 from motion_backend.mocap.clip import ClipError
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.skeleton import build_skeleton
+from scene_graphs.geometry.egocentric_heightmap import SceneHeights
+from scene_graphs.geometry.occupancy_grid import occupancy_pair
+from scene_graphs.home import home_from_layouts
+from scene_graphs.layout_library import built_in_index
 
 TINY = DenoiserSizes(1, 2, 16, 16, True, None)
 WALK, REACH = (MadeOf.RECORDED, PartKind.WALK), (MadeOf.PROCEDURAL, PartKind.REACH)
@@ -164,6 +171,48 @@ def test_bones_and_told_positions_agree_on_true_windows() -> None:
     found = losses(batch.windows, batch.windows, scale, Kinematics(), LossWeights())
     assert float(found.clean) == 0.0
     assert found.numbers()["bones"] < 5e-3
+
+
+def test_voxels_of_many_bodies_are_those_of_each() -> None:
+    """Looked up in bits of whole rooms, where `occupancy_pair` asks for one body at a time."""
+    homes = [home_from_layouts([built_in_index().layouts[number]], 0) for number in (0, 7)]
+    rng, rooms, walks = np.random.default_rng(0), np.array([0, 1, 1, 0]), np.array([True, False, True, False])
+    floors = [shapely.bounds(homes[room].floor) for room in rooms]
+    here, goal = (np.stack([rng.uniform(one[:2], one[2:]) for one in floors]) for _ in range(2))
+    yaw = rng.uniform(-3, 3, 4)
+    found = RoomVoxels(homes).images(*map(torch.from_numpy, (rooms, here, goal, yaw, walks)))
+    for at, room in enumerate(rooms):
+        places = tuple(here[at].tolist()), tuple(goal[at].tolist())
+        pair = occupancy_pair(SceneHeights(homes[room]), places[0], yaw[at], places[1], walking=bool(walks[at]))
+        assert 0 < pair.mean() < 1
+        assert np.array_equal(found[at].numpy(), voxel_image(pair))
+
+
+def test_a_run_by_the_clock_ends_with_it_and_with_its_lowest_rate(tmp_path: Path) -> None:
+    config = TrainConfig(1000, batch=2, seconds=10.0, warmup=1)
+    assert config.rate_at(5, 10.0) == pytest.approx(config.rate * config.final)
+    assert config.rate_at(500, 0.0) == config.rate_at(0, 5.0)
+    bank, soon = bank_of(two_people()), replace(config, seconds=1e-6)
+    weights = train(denoiser_learner(TINY, soon), bank, bank.windows({WALK: 1.0}), soon, tmp_path)
+    assert weights.config["training"]["steps_done"] == 1
+
+
+def test_dropout_is_of_training_alone_and_follows_from_the_step() -> None:
+    sizes, config = replace(TINY, dropout=0.5), TrainConfig(1)
+    bank = bank_of(two_people())
+    batch = bank.batch(np.array([0, 6]), np.array([0, 0]), np.zeros(2, dtype=np.bool_))
+    learner, scale = denoiser_learner(sizes, config), Scale(torch.zeros(202), torch.ones(202))
+    run = Run(learner.network, {}, scale, Adam([]))
+
+    def loss(seed: int) -> float:
+        return float(learner.loss(run, batch, np.random.default_rng(seed))[0].detach())
+
+    learner.network.train()
+    assert loss(0) == loss(0)
+    learned = loss(0)
+    learner.network.eval()
+    assert loss(0) != learned
+    assert loss(0) == loss(0)
 
 
 def a_walk() -> Motion:
@@ -315,6 +364,22 @@ def test_weights_come_back_from_disk_and_broken_ones_are_named(tmp_path: Path) -
     config.unlink()
     with pytest.raises(CheckpointError, match=r"denoiser\.json: it is missing"):
         load_denoiser(path)
+
+
+def test_sentences_of_stretches_come_back_from_disk_as_features(tmp_path: Path) -> None:
+    walk = stretch(tumbling(60), Passage(0, 60, PartKind.WALK, "walk to the left"))
+    said = wordings([walk])
+    assert said == ["walk to the left", "walk to the right"]
+    write_stretches([walk], tmp_path / "told.npz", dict(zip(said, words(said), strict=True)))
+    write_stretches([walk], tmp_path / "untold.npz")
+    found = read_sentences(tmp_path / "told.npz")
+    assert [*found] == said
+    assert np.array_equal(np.stack([*found.values()]), words(said))
+    assert read_stretches(tmp_path / "told.npz")[0].passages == walk.passages
+    assert read_sentences(tmp_path / "untold.npz") == {}
+    (tmp_path / "untold.npz").write_bytes(b"nothing")
+    with pytest.raises(ClipError, match=r"untold\.npz cannot be read"):
+        read_sentences(tmp_path / "untold.npz")
 
 
 def test_stretches_come_back_from_disk(tmp_path: Path) -> None:

@@ -203,11 +203,26 @@ def all_along(plan: Plan, doing: Doing) -> Plan:
 
 def test_the_pelvis_comes_first_on_the_way_down_to_lie_as_on_the_way_up() -> None:
     plan = plan_of(walk())
-    ups = (Doing.LIES, Doing.RISES, Doing.STANDS_UP, Doing.OTHER)
-    lies, rises, stands_up, does = (prices(all_along(plan, one), 4) for one in ups)
+    ups = (Doing.LIES, Doing.RISES, Doing.STANDS_UP, Doing.GOES_DOWN, Doing.OTHER)
+    lies, rises, stands_up, goes_down, does = (prices(all_along(plan, one), 4) for one in ups)
     np.testing.assert_array_equal(lies, rises)
     np.testing.assert_array_equal(lies, stands_up)
-    assert (lies[:6] > does[:6]).all()
+    assert (lies[:6] > goes_down[:6]).all()
+    assert (goes_down[:6] > does[:6]).all()
+
+
+def test_controls_change_less_where_more_than_feet_touches_something() -> None:
+    plan = plan_of(walk())
+    changed = {}
+    for doing in (Doing.OTHER, Doing.LIES):
+        tracker = tracker_of(all_along(plan, doing))
+        data, reader = tracker._scratch()
+        controller = Controller(empty_room(), data, tracker.reference, reader)
+        start = moment_of(tracker.reference, 4)
+        nudged = start._replace(state=start.state._replace(qvel=start.state.qvel + 0.2))
+        offsets = controller.improve(nudged, 4, np.zeros((0, NU)), Effort()).offsets
+        changed[doing] = float(np.abs(np.diff(offsets, axis=0)).sum() / np.abs(offsets).sum())
+    assert changed[Doing.LIES] < changed[Doing.OTHER]
 
 
 def test_the_leg_that_swings_is_to_be_where_it_is_planned_and_the_one_that_stands_to_hold_the_pelvis_up() -> None:
@@ -233,9 +248,9 @@ def test_a_plan_knows_what_it_does_in_every_frame() -> None:
     )  # fmt: skip
     phases = tuple(Phase(kind, 10 * index, 10 * index + 10) for index, kind in enumerate(kinds))
     motion = replace(motion, phases=phases)
-    from_bed = [Doing.WALKS, Doing.LIES, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.OTHER, Doing.OTHER]
+    from_bed = [Doing.WALKS, Doing.GOES_DOWN, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.OTHER, Doing.OTHER]
     assert plan_of(motion).doing[::10].tolist() == from_bed
     low = replace(motion, root_positions=motion.root_positions * np.array([1, 0.2, 1], dtype=np.float32))
     from_floor = [*from_bed[:-2], Doing.RISES, Doing.STANDS_UP]
     assert plan_of(low).doing.tolist() == np.repeat(from_floor, 10).tolist()
-    assert plan_of(low).part(slice(5, 15)).doing.tolist() == [Doing.WALKS] * 5 + [Doing.LIES] * 5
+    assert plan_of(low).part(slice(5, 15)).doing.tolist() == [Doing.WALKS] * 5 + [Doing.GOES_DOWN] * 5

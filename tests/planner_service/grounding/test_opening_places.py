@@ -1,4 +1,5 @@
-"""Windows are looked out of and opened where there are some; without one the body's note says so."""
+"""Windows are looked out of and opened, doors are gone to and opened, where there are some; without one the body's note
+says so. Who comes in begins at the door."""
 
 from __future__ import annotations
 
@@ -11,11 +12,12 @@ from motion_backend.director import Director
 from motion_backend.motion import Action, Character, Skill
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import LOOKS_OUT, Place, act
-from planner_service.grounding.window_places import NO_WINDOW, WINDOW, at_window, window_place
+from planner_service.grounding.opening_places import LACKS, comes_in, entry, opening_of, opening_place
 from planner_service.scripts.script import Keyframe
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Layout, Opening, Placed
 from scene_graphs.layout_library import built_in_layouts
+from scene_graphs.meshes.interior_mesh import wall_meshes
 
 ROOM = Layout(
     "room",
@@ -48,7 +50,7 @@ def grounded(*rows: tuple[str, str, str], said: tuple[str, ...], home: Home = HO
     ],
 )  # fmt: skip
 def test_a_window_is_asked_for_by_who_looks_out_and_who_opens_it(skill: str, said: str, asks: bool) -> None:
-    assert at_window(Skill(skill), said) == asks
+    assert (opening_of(Skill(skill), said) == "window") == asks
 
 
 def test_who_looks_out_of_the_window_goes_to_it_and_faces_out_of_it() -> None:
@@ -68,7 +70,7 @@ def test_who_looks_out_of_the_window_goes_to_it_and_faces_out_of_it() -> None:
 def test_who_opens_the_window_lays_a_hand_on_it_and_the_walk_leads_there() -> None:
     walk, touch = grounded(("loco", "walk", "bed"), OPEN, said=("opens the window",) * 2)
     assert touch.spot is not None
-    assert touch.object_id == WINDOW
+    assert touch.object_id == "window"
     assert touch.spot.point[0] == pytest.approx(0.0, abs=1e-9)
     assert ROOM.windows[0].bottom < touch.spot.point[1] < ROOM.windows[0].top
     assert walk.goal == touch.spot.standing
@@ -82,10 +84,10 @@ def test_who_opens_the_window_lays_a_hand_on_it_and_the_walk_leads_there() -> No
 @pytest.mark.parametrize("row", [LOOK, OPEN])
 def test_without_a_window_it_is_done_without_one_and_the_motion_says_so(row: tuple[str, str, str]) -> None:
     (action,) = grounded(row, said=("opens the window and looks out of it",), home=BLIND)
-    assert action.lacks == NO_WINDOW
+    assert action.lacks == LACKS["window"]
     director = Director.of("procedural")
     motion, _ = director.act(BLIND, action, director.begin(BLIND, Character(), 0))
-    assert NO_WINDOW in [note.words for note in motion.notes]
+    assert LACKS["window"] in [note.words for note in motion.notes]
 
 
 def test_in_nearly_all_rooms_one_can_stand_at_a_window_looking_straight_out_of_it() -> None:
@@ -93,7 +95,7 @@ def test_in_nearly_all_rooms_one_can_stand_at_a_window_looking_straight_out_of_i
     for layout in (some := built_in_layouts()[::25]):
         home = home_from_layouts([layout], 0)
         walkable = scene_of(home).walkable
-        place = window_place(home, walkable, 0, None)
+        place = opening_place(home, walkable, "window", 0, None)
         if place is None:  # a table stands before the only one
             continue
         found += 1
@@ -114,3 +116,66 @@ def test_who_stretches_beside_a_bed_reaches_for_what_is_high_and_not_down_to_the
     assert walk.goal == touch.spot.standing
     (low,) = grounded(OPEN, said=("stretches",), home=BLIND)
     assert low.object_id == "0/bed", "there is nothing else, and the body's own note says so"
+
+
+DOOR = home_from_layouts([replace(ROOM, windows=(), doors=(Opening(((2.0, 0.0), (2.9, 0.0))),))], 0)
+TURN = ("touch", "rotate with the right hand", "bed")
+
+
+@pytest.mark.parametrize(
+    ("skill", "said", "asks"),
+    [
+        ("touch", "slams the door behind her", True), ("touch", "answers the knock", True),
+        ("touch", "lets the cat out", True), ("touch", "locks the front door", True),
+        ("loco", "runs to the door", True), ("loco", "waits by the door", True), ("touch", "opens the fridge door", False),
+        ("touch", "opens the door of the oven", False), ("touch", "opens the cupboard", False),
+        ("loco", "walks to the cupboard door", False), ("sitdown", "sits by the door", False),
+    ],
+)  # fmt: skip
+def test_a_door_is_asked_for_by_who_opens_it_and_who_goes_to_it(skill: str, said: str, asks: bool) -> None:
+    assert (opening_of(Skill(skill), said) == "door") == asks
+
+
+def test_who_opens_the_door_lays_a_hand_on_its_handle() -> None:
+    walk, touch = grounded(("loco", "walk", "bed"), TURN, said=("opens the door",) * 2, home=DOOR)
+    assert touch.spot is not None
+    assert touch.object_id == "door"
+    assert walk.goal == touch.spot.standing
+    handles = [mesh for mesh in wall_meshes(DOOR) if mesh.name.startswith("door handle")]
+    (handle,) = (np.asarray(mesh.vertices) for mesh in handles)
+    assert (np.asarray(touch.spot.point) >= handle.min(axis=0) - 0.02).all()
+    assert (np.asarray(touch.spot.point) <= handle.max(axis=0) + 0.02).all()
+    director = Director.of("procedural")
+    motion = director.act(DOOR, touch, director.begin(DOOR, Character(), 0))[0]
+    assert motion.completed, motion.reason
+
+
+def test_without_a_door_it_is_done_where_it_was_planned_and_noted() -> None:
+    (touch,) = grounded(TURN, said=("opens the door",), home=BLIND)
+    assert (touch.object_id, touch.lacks) == ("0/bed", LACKS["door"])
+
+
+@pytest.mark.parametrize(
+    ("said", "comes"),
+    [
+        ("comes home tired", True), ("gets in late", True), ("came back from the office", True), ("got home", True),
+        ("bursts through the door", True), ("walks in circles", False), ("gets in bed", False),
+        ("walks in the living room", False), ("gets up and comes to", False), ("paces up and down", False),
+    ],
+)  # fmt: skip
+def test_who_comes_in_is_told_from_who_is_there(said: str, comes: bool) -> None:
+    assert comes_in(said) == comes
+
+
+def test_who_comes_in_begins_at_the_door_and_looks_into_the_room() -> None:
+    rows = (("loco", "excited walk", "floor"), TURN)
+    walk, _ = grounded(*rows, said=("comes home", "tidies"), home=DOOR)
+    assert walk.begins is not None
+    assert walk.begins == entry(DOOR, scene_of(DOOR).walkable, 0)
+    director = Director.of("procedural")
+    state = director.begin(DOOR, Character(), 0, walk)
+    x, _, z = state.pelvis
+    assert np.hypot(x - walk.begins[0], z - walk.begins[1]) < 0.1
+    assert z < 1.5, "the door is at z = 0"
+    assert grounded(*rows, said=("paces", "tidies"), home=DOOR)[0].begins is None
+    assert grounded(*rows, said=("comes home", "tidies"), home=BLIND)[0].begins is None, "no door"
