@@ -29,6 +29,26 @@ class Skill(StrEnum):
     LIEDOWN = "liedown"
     TOUCH = "touch"
 
+    @property
+    def words(self) -> str:
+        """What people call it: "sit down"."""
+        return SKILL_WORDS[self]
+
+
+SKILL_WORDS: Final = {
+    Skill.LOCO: "walk",
+    Skill.SITDOWN: "sit down",
+    Skill.STANDUP: "stand up",
+    Skill.GETUP: "get up",
+    Skill.LIEDOWN: "lie down",
+    Skill.TOUCH: "touch",
+}
+
+
+def moment(keyframe: int) -> str:
+    """What people are told a keyframe is; they count from 1, indices from 0."""
+    return f"moment {keyframe + 1}"
+
 
 class Emotion(StrEnum):
     """Neutral and the eight emotions or styles of SIMS 4.1; free words become one in emotion_words.py."""

@@ -24,7 +24,7 @@ from motion_backend.metrics.contact_error import (
     risen,
 )
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import RISINGS, Action, Posture, Skill
+from motion_backend.motion import RISINGS, Action, Posture, Skill, moment
 from scene_graphs.affordances.affordances import Spot
 
 ENTERING: Final[dict[Skill, tuple[PartKind, ...]]] = {
@@ -147,8 +147,8 @@ def shortfall(action: Action, body: Kinematics) -> str:
     if stop - start >= round(rule.seconds * motion.fps):
         return ""
     return (
-        f"keyframe {action.keyframe}: {rule.what} was within {rule.within:.2f} m of where to {action.skill} for "
-        f"{(stop - start) / motion.fps:.1f} s and not for {rule.seconds:.1f} s; it came to {near.min():.2f} m"
+        f"{moment(action.keyframe)}: {rule.what} should be within {rule.within:.2f} m of where to {action.skill.words} "
+        f"for {rule.seconds:.1f} s, and was for {(stop - start) / motion.fps:.1f} s; it came to {near.min():.2f} m"
     )
 
 
@@ -166,4 +166,5 @@ def _not_up(action: Action, body: Kinematics) -> str:
     frames = len(stood) if stood.all() else int(np.argmin(stood))
     if frames >= round(RISEN[2] * body.motion.fps):
         return ""
-    return f"keyframe {action.keyframe}: it had stood for {frames / body.motion.fps:.1f} s and not for {RISEN[2]} s"
+    stood = frames / body.motion.fps
+    return f"{moment(action.keyframe)}: the body should stand for {RISEN[2]} s at its end, and did for {stood:.1f} s"

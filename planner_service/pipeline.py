@@ -261,13 +261,13 @@ class Pipeline:
 
     def act(self, request: StoryRequest, stage: Furnished, kept: Sequence[Kept | None] = ()) -> tuple[Action, ...]:
         """The keyframes of a script, grounded in its home; what is `kept` of each of them stays as it was."""
-
-        def words() -> Vocabulary:
-            return Vocabulary.built_in(self.shelves.scripts().encoder)
-
         scale = actor(request, stage.script).height / REFERENCE_HEIGHT
         said = [stage.script.said_of(keyframe) for keyframe in stage.script.keyframes]
-        return act(stage.script.keyframes, stage.places, stage.home, request.seed, words, scale, kept, said)
+        return act(stage.script.keyframes, stage.places, stage.home, request.seed, self.words, scale, kept, said)
+
+    def words(self) -> Vocabulary:
+        """The captions that the body knows, compared by their meaning."""
+        return Vocabulary.built_in(self.shelves.scripts().encoder)
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from motion_backend.backend_protocol import Part
-from motion_backend.motion import Action, Phase, PhaseKind, Posture
+from motion_backend.motion import Action, Phase, PhaseKind, Posture, moment
 from motion_backend.procedural.balance_pass import NOTHING, Before
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.touch.hand_rests import Holds
@@ -97,7 +97,7 @@ class Body:
 def spot_of(action: Action) -> Spot:
     """Where on the furniture an action is to be done."""
     if action.spot is None:
-        raise NoPath(f"keyframe {action.keyframe}: {action.skill} has no place to go to")
+        raise NoPath(f"{moment(action.keyframe)}: there is no place to {action.skill.words}")
     return action.spot
 
 

@@ -36,6 +36,8 @@ NEAREST: Final = 2.3
 """Metres from the middle of what is seen."""
 CLOSEST: Final = {Subject.FACE: 1.25, Subject.HANDS: 1.2}
 """The same from near."""
+NO_LONGER_NEAR: Final = 2.6
+"""Metres from which on a look from near shows no more than one of the whole: who stoops moves head and hand far."""
 FRAME: Final = 0.84
 """The share of a picture that all of a body keeps within."""
 SAMPLES: Final = 5
@@ -161,24 +163,27 @@ class _Director:
             for index, yaw in enumerate(YAWS.tolist()):
                 camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
                 score = float(liked[index]) + sight.score(camera, poses)
-                score -= FAR * float(np.linalg.norm(np.subtract(camera.eye, camera.target)))
+                score -= FAR * _distance(camera)
                 scored.append((score - self._broken(camera, before, start), camera))
         return _sorted(scored)
 
     def _near(self, close: Framing, before: Camera) -> list[Camera]:
-        """Cameras near a face, a quarter turned, or beside an arm that touches, best first; none is in furniture."""
+        """Cameras near a face, a quarter turned, or beside an arm that touches, with whose head and
+        shoulders it is, best first; none is in furniture."""
         frames = _sampled(close.start, close.stop)
         poses, turns = self.joints[frames], self.turns[frames]
-        points = _head(poses, turns) if close.subject is Subject.FACE else _arms(poses, close.hands)
-        if close.subject is Subject.FACE and close.hands:
-            points = np.concatenate([points, poses[:, list(close.hands)].reshape(-1, 3)])
+        hands = (
+            poses[:, list(close.hands)].reshape(-1, 3) if close.subject is Subject.FACE else _arms(poses, close.hands)
+        )
+        # A hand without the one whose it is tells nothing of who does it, and how.
+        points = np.concatenate([_head(poses, turns), hands])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         scored = []
         for pitch in CLOSE_PITCHES:
             for yaw in YAWS.tolist():
                 camera = _fitted(yaw, pitch, points, self.aspect, CLOSEST[close.subject])
-                if sight.blocked(camera):
+                if sight.blocked(camera) or _distance(camera) > NO_LONGER_NEAR:
                     continue
                 towards = -camera.axes[2]
                 if float(np.mean(_turns(ahead, towards))) > WIDEST_NEAR[close.subject]:
@@ -254,6 +259,10 @@ def _fitted(yaw: float, pitch: float, points: Array, aspect: float, nearest: flo
     # A point is within the picture where its distance to the axis, with skin, is at most `wide` times its depth.
     asked = [(np.abs(up) + MARGIN) / wide - ahead, (np.abs(across) + MARGIN) / (wide * aspect) - ahead, MARGIN - ahead]
     return orbit(target, max(nearest, float(np.max(asked))), yaw, pitch, FOV)
+
+
+def _distance(camera: Camera) -> float:
+    return float(np.linalg.norm(np.subtract(camera.eye, camera.target)))
 
 
 def _alike(one: Camera, other: Camera) -> bool:

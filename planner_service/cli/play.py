@@ -12,11 +12,13 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from motion_backend.motion import Character, Skill
+from motion_backend.motion import Character, Skill, moment
 from planner_service.cli.cast_command import CharacterOption, character_given
 from planner_service.cli.story import Extra, check_output, produce
 from planner_service.library.library import open_shelves
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
+from planner_service.scripts.caption_actions import look_of
+from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.captions import captions, synonyms
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, legible
 from planner_service.settings import read_settings
@@ -58,11 +60,11 @@ def play(
     extra = Extra(film, usd)
     check_output(out, extra)
     console = Console(markup=False)
-    for line in unknown_captions(keyframes):
-        console.print(line, highlight=False, soft_wrap=True)
     pipeline = Pipeline(open_shelves(settings))
+    for line in unknown_captions(keyframes, pipeline.words):
+        console.print(f"{script.name}: {line}", highlight=False, soft_wrap=True)
     request = StoryRequest(
-        theme=title or script.stem,
+        theme=title,
         keyframes=tuple(keyframes),
         layouts=chosen_layouts(layout or [], pipeline.shelves),
         seed=seed,
@@ -81,7 +83,7 @@ def read_script(path: Path) -> tuple[list[Keyframe], str]:
     if len(rows) > MAX_KEYFRAMES:
         raise RequestError(f"{path.name}: has {len(rows)} keyframes, at most {MAX_KEYFRAMES} are acted")
     faults: list[str] = []
-    keyframes = [_keyframe(row, f"keyframes.{number}", faults) for number, row in enumerate(rows)]
+    keyframes = [_keyframe(row, moment(number), faults) for number, row in enumerate(rows)]
     if faults:
         more = [f"and {len(faults) - MAX_FAULTS} more"] if len(faults) > MAX_FAULTS else []
         told = " · ".join([*faults[:MAX_FAULTS], *more])
@@ -123,7 +125,7 @@ def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:
     if not furniture.on_floor and not is_known(furniture.piece[0]):
         words = sorted(map(display_name, catalogue().class_of))
         near = _nearest(furniture.piece[0], words) or '; "floor" needs none'
-        faults.append(f"{where}.furniture: {furniture.furniture!r:.80} is not known{near}")
+        faults.append(f"{where}, furniture: {furniture.furniture!r:.80} is not known{near}")
         return None
     return keyframe
 
@@ -132,7 +134,7 @@ def _fault(where: str, loc: Sequence[int | str], kind: str, said: str) -> str:
     """Where a keyframe is wrong, and what would be right."""
     has = ", ".join(PlannedKeyframe.model_fields)
     remedy = f"; leave it out, a keyframe has {has}" if kind == "extra_forbidden" else ""
-    return f"{'.'.join([where, *map(str, loc)])}: {said}{remedy}"
+    return f"{', '.join([where, *map(str, loc)])}: {said}{remedy}"
 
 
 def _furniture_of(row: Any) -> str:
@@ -141,16 +143,20 @@ def _furniture_of(row: Any) -> str:
     return found if isinstance(found, str) else "floor"
 
 
-def unknown_captions(keyframes: Sequence[Keyframe]) -> list[str]:
-    """Where captions stand that are none of the body's own: their words are read as far as they go."""
+def unknown_captions(keyframes: Sequence[Keyframe], words: Words = hashed_words) -> list[str]:
+    """Where captions stand that are none of the body's own, and what is done: their words as far as they go, or another
+    caption. `words` are asked for what is near."""
     known = {skill: [*rows, *synonyms().get(skill, {})] for skill, rows in captions().items()}
-    return [
-        f"keyframes.{number}.caption: {keyframe.caption!r} is read word by word{_nearest(keyframe.caption, rows)}"
-        for number, keyframe in enumerate(keyframes)
-        if keyframe.caption not in (rows := known[keyframe.skill])
-    ]
+    told = []
+    for number, keyframe in enumerate(keyframes):
+        if (caption := look_of(keyframe.caption)) in (rows := known[keyframe.skill]):
+            continue
+        done = performed_as(keyframe.skill, caption, keyframe.mood, words)
+        how = "is read word by word" if done == caption else f"is unknown to the body, which does {done!r} instead"
+        told.append(f"{moment(number)}, caption: {caption!r} {how}{_nearest(caption, rows)}")
+    return told
 
 
 def _nearest(word: str, known: Sequence[str]) -> str:
-    found = get_close_matches(word, known, n=3, cutoff=0.4)
+    found = get_close_matches(word, list(dict.fromkeys(known)), n=3, cutoff=0.4)
     return f"; perhaps {', '.join(map(repr, found))}" if found else ""

@@ -21,7 +21,7 @@ from planner_service.cli.console import ModelOption, plain_table
 from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
 from planner_service.llm.ollama_server import ollama_models
-from planner_service.narration.told import UNSEEN
+from planner_service.narration.told import UNSEEN, Told
 from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
 from planner_service.settings import give_backends, read_settings
 from planner_service.themes.beats import clean
@@ -202,17 +202,14 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
 
     console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
     told = made.planned.told
-    text = Text(told.text)
-    for span in told.thoughts:
-        text.stylize("italic dim", span.start, span.end)
-    console.print(text, f"\n{UNSEEN}\n" if told.thoughts else "", sep="\n", highlight=False)
+    console.print(_slanted(told, console), end="\n\n", highlight=False)
     console.print(f"played by {', '.join(told_look(made.planned.character))}\n", highlight=False)
     table = plain_table(
         "#", "moment", "at", "seconds", "reached", "off by", right=("#", "seconds", "off by"), fold=True
     )
     for action, figure in zip(made.actions, made.figures, strict=True):
         table.add_row(
-            str(figure.keyframe),
+            str(figure.keyframe + 1),
             action.caption,
             action.object_id or "the floor",
             f"{figure.seconds:.1f}",
@@ -230,9 +227,24 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     console.print(f"planner: {made.planned.script.planner} · motion: {movers}{encoder}", highlight=False)
     if made.planned.spent is not None:
         console.print(f"language model: {made.planned.spent}", highlight=False)
-    for line in told_notes(made.motion.notes):
+    for line in told_notes(made):
         console.print(f"done otherwise than its caption says: {line}", highlight=False)
     console.print(f"\nwritten to {files[0].parent}/: {', '.join(file.name for file in files)}", highlight=False)
+
+
+def _slanted(told: Told, console: Console) -> Text:
+    """The text with what is not seen slanted, or between asterisks where nothing can be; and what that means."""
+    mark = "" if console.color_system else "*"
+    text, end = Text(), 0
+    for span in told.thoughts:
+        text.append(told.text[end : span.start])
+        text.append(f"{mark}{told.text[span.start : span.end]}{mark}", "italic dim")
+        end = span.end
+    text.append(told.text[end:])
+    if told.thoughts:
+        before, after = UNSEEN.split("{this}")
+        text.append(f"\n\n{before}").append(f"{mark}this{mark}", "italic dim").append(after)
+    return text
 
 
 def _figures(report: dict[str, Any]) -> str:

@@ -9,6 +9,7 @@ import typer
 from rich.console import Console
 from rich.text import Text
 
+from motion_backend.motion import moment
 from planner_service.cli.console import plain_table
 from planner_service.library.library import Shelves, open_shelves
 from planner_service.llm.factory import load_model
@@ -81,12 +82,12 @@ def _finish(plan: TaskPlan, room: Layout | None, out: Path | None, shelves: Shel
     files = write_story(made, out)
     report = made.report
     console.print(
-        f"\n{report['reached']} of {report['keyframes']} keyframes reached · {report['seconds']:.0f} s of motion\n"
+        f"\n{report['reached']} of {report['keyframes']} moments were done · {report['seconds']:.0f} s of motion\n"
         f"written to {out}/: {', '.join(file.name for file in files)}",
         highlight=False,
     )
     for note in made.motion.notes:
-        console.print(f"done otherwise: keyframe {note.keyframe}: {note.words}", highlight=False)
+        console.print(f"done otherwise: {moment(note.keyframe)}: {note.words}", highlight=False)
 
 
 def _show(plan: TaskPlan, console: Console) -> None:

@@ -308,10 +308,10 @@ def _written(row: _Row, beat: Beat) -> PlannedBeat:
         try:
             keyframes.append(read_keyframe(one))
         except (ValidationError, TypeError, AttributeError):
-            faults.append(f"keyframe {number} cannot be read")
+            faults.append(f"its step {number + 1} cannot be read")
 
     def note(index: int, _field: str, fault: str, remedy: str) -> None:
-        faults.append(f"keyframe {index}: {fault}; {remedy}")
+        faults.append(f"its step {index + 1}: {fault}; {remedy}")
 
     fitted = Fitting[Keyframe](note, hashed_words()).fit(keyframes)
     told = f"“{row.text[:60]}”: {'; '.join(faults)}" if faults else ""

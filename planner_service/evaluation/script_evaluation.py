@@ -21,7 +21,7 @@ from motion_backend.backends import DEFAULT_BACKEND
 from motion_backend.director import Director, shares
 from motion_backend.metrics.contact_error import outcome
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Character, Motion, Skill
+from motion_backend.motion import Action, Character, Motion, Skill, moment
 from motion_backend.physics.physics_record import physics_of
 from motion_backend.rotations import Array
 from motion_backend.state_machine import ENDS
@@ -175,7 +175,7 @@ def _why(action: Action, motion: Motion, reached: bool) -> str:
         return motion.reason
     told = ["was not held"] if not reached else [note.words for note in motion.notes]
     others = [phase.fallback for phase in motion.phases if phase.fallback]
-    return f"keyframe {action.keyframe}: “{action.caption}” " + "; ".join(dict.fromkeys([*told, *others]))
+    return f"{moment(action.keyframe)}: “{action.caption}” " + "; ".join(dict.fromkeys([*told, *others]))
 
 
 @cache

@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill
+from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill, moment
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
@@ -32,6 +32,7 @@ from planner_service.scripts.script_repair import free_hand, hand_of
 from planner_service.themes.opening_words import Kind, comes_in, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
 from scene_graphs.errors import UserError
+from scene_graphs.furniture import display_name
 from scene_graphs.home import Home
 from scene_graphs.layout import Placed
 from scene_graphs.navigation.path_planner import Walkable
@@ -252,13 +253,14 @@ class _Stage:
             return self.on  # who rests there rests otherwise
         if place.object_id is None:
             if keyframe.skill is Skill.TOUCH:
-                raise UnreachableError(f"keyframe {index}: nothing to touch, {keyframe.furniture!r} is not in the home")
+                raise UnreachableError(f"{moment(index)}: nothing to touch, {keyframe.furniture!r} is not in the home")
             return self._on_floor(need, place.room)
         placed = self.home.object(place.object_id)
         found = self._reachable(placed, need)
         if not found:
+            piece = f"{display_name(placed.category)} ({place.object_id})"
             raise UnreachableError(
-                f"keyframe {index}: no spot to {need} on {place.object_id} ({placed.category}) that can be walked to",
+                f"{moment(index)}: no spot to {need} on the {piece} can be walked to",
                 "clear the way to it, or choose another room",
             )
         if need == "touch":

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from motion_backend.motion import Skill
+from motion_backend.motion import Skill, moment
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place, can_stand
 from planner_service.scripts.script import LongScript, PlannedKeyframe
@@ -91,7 +91,7 @@ class Placing:
         if object_id is None and keyframe.skill is Skill.TOUCH:
             lacks = f"the {room.replace('_', ' ')} has no {display_name(word)} to touch"
             raise MissingError(
-                f"keyframe {index}: {lacks}, nor anything that could stand for it; choose another room or story"
+                f"{moment(index)}: {lacks}, nor anything that could stand for it; choose another room or story"
             )
         if object_id is None and keyframe.skill in NEEDS:
             self.stand_ins[room, node] = FLOOR

@@ -40,7 +40,7 @@ from planner_service.output.story_export import report_to_dict
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, actor, judge, role_of
 from planner_service.scripts.script import LongScript
 from planner_service.store.story_store import Made, Stories, count_spent, put_made
-from planner_service.store.take_store import origin_of
+from planner_service.store.take_store import origin_of, take_number
 from scene_graphs.home import Home
 from scene_graphs.json_fields import Json
 
@@ -293,6 +293,8 @@ class Maker:
         taken = reused_segments(story, origin, rows, director) if director else []
         own = [_own(one, index, len(actions)) for index, one in enumerate(taken)]
         summary |= {"asleep": sorted(asleep), "reused": len(own)}
+        if origin:
+            summary["take"] = take_number(story.store.engine, story.id)
         return _to_bytes({"actions": rows}), summary, own
 
     def _report(self, story: OpenStory) -> tuple[bytes, Json]:

@@ -11,6 +11,7 @@ import re
 import sys
 import zlib
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import groupby, pairwise
 from typing import Final
 
@@ -19,7 +20,7 @@ from planner_service.narration.keyframe_phrases import RESTS, Places, Variety, W
 from planner_service.narration.keyframe_sentences import sentences
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.retold_theme import Retelling, Stretch, retell
-from planner_service.narration.story_words import story_words, title_of
+from planner_service.narration.story_words import headline, story_words, title_of
 from planner_service.narration.tense import bases, form_of
 from planner_service.narration.told import Told, Words, page
 from planner_service.scripts.acted_beats import connects, planned_beats
@@ -37,11 +38,13 @@ Rows = Sequence[tuple[int, PlannedKeyframe]]
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
     """The story of a script by rules; the same seed tells it in the same words."""
     voice = Voice.of(character)
-    title = title_of(script.theme, script.beats[-1].emotion if script.beats else "neutral")
     wording = Wording(voice, Variety(seed, zlib.crc32(script.theme.encode())), places or {})
-    if not any(beat.text for beat in script.beats):
-        return page(title, sentences(wording, list(enumerate(script.keyframes)), named=False))
-    return page(title, _Teller(script, voice, wording).sentences())
+    if any(beat.text for beat in script.beats):
+        return page(title_of(script.theme, script.beats[-1].emotion), _Teller(script, voice, wording).sentences())
+    told = page("", sentences(wording, list(enumerate(script.keyframes)), named=False))
+    # Keyframes of one's own are called what they were given as.
+    title = title_of(script.theme, script.beats[-1].emotion) if script.beats else headline(script.theme)
+    return replace(told, title=title or headline(told.text))
 
 
 class _Teller:

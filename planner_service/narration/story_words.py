@@ -12,6 +12,9 @@ from scene_graphs.data_tables import read_table, require_known, table
 
 MAX_PATTERN_LENGTH: Final = 3000
 """Letters of a pattern."""
+MAX_TITLE: Final = 60
+"""Letters of a title that is made of a text's first words."""
+_FIRST: Final = re.compile(r"[^.!?…]+")
 
 
 @table
@@ -70,6 +73,17 @@ def title_of(theme: str, mood: str) -> str:
     }
     plain = story_words().mood_titles[mood].format(time=found["times"] or "Day")
     return found["titles"] or re.sub(r"^A (?=[AEIOU])", "An ", plain)
+
+
+def headline(text: str) -> str:
+    """A text's first sentence, short enough for a title: up to a comma or an "and", or its first words."""
+    first = _FIRST.match(" ".join(text.split()))
+    words = first[0].rstrip(" .,;:") if first else ""
+    if len(words) > MAX_TITLE:
+        whole = max(words.rfind(joint, 0, MAX_TITLE) for joint in (",", " and ", " then "))
+        space = words.rfind(" ", 0, MAX_TITLE)
+        words = words[:whole] if whole > 0 else f"{words[: max(space, 0) or MAX_TITLE]}…"
+    return words[:1].upper() + words[1:]
 
 
 @cache

@@ -59,7 +59,8 @@ class Told:
         return cls(row["title"], row["text"], tuple(spans), tuple(thoughts))
 
 
-UNSEEN: Final = "Slanted words are told and not seen: the body does not show them."
+UNSEEN: Final = "Words written like {this} are told and not seen: the body does not show them."
+"""`this` is to be written as they are."""
 
 
 @dataclass(frozen=True)

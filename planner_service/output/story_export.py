@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -16,7 +16,6 @@ from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from motion_backend.formats.usd_film import film_usd
 from motion_backend.metrics.figure_limits import held_against
-from motion_backend.motion import Note
 from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.narration.told import UNSEEN
@@ -133,14 +132,14 @@ def story_to_markdown(story: Story) -> str:
     """The told story with what it was made of."""
     planned, script = story.planned, story.planned.script
     rows = [
-        f"| {index} | {keyframe.skill.value} | {keyframe.emotion} | {keyframe.caption} | "
+        f"| {number} | {keyframe.skill.words} | {keyframe.emotion} | {keyframe.caption} | "
         f"{action.furniture}{f' ({action.object_id})' if action.object_id else ''} | {_mark(figure.reached)} |"
-        for index, (keyframe, action, figure) in enumerate(
-            zip(script.keyframes, story.actions, story.figures, strict=True)
+        for number, (keyframe, action, figure) in enumerate(
+            zip(script.keyframes, story.actions, story.figures, strict=True), 1
         )
     ]
     rooms = [f"- {line}" for line in planned.stage.explain()]
-    notes = [f"- {line}" for line in told_notes(story.motion.notes)] or ["- nothing"]
+    notes = [f"- {line}" for line in told_notes(story)] or ["- nothing"]
     repairs = [f"- {line}" for line in script.repairs] or ["- none"]
     beats = [f"- {line}" for line in beats_of(story).lines()]
     return "\n".join(
@@ -149,11 +148,10 @@ def story_to_markdown(story: Story) -> str:
             "",
             planned.told.marked(lambda words: f"*{words}*"),
             "",
-            *([UNSEEN, ""] if planned.told.thoughts else []),
+            *([UNSEEN.format(this="*this*"), ""] if planned.told.thoughts else []),
             "## How it was made",
             "",
-            f"Theme: {script.theme}",
-            "",
+            *([f"Theme: {script.theme}", ""] if script.theme else []),
             _makers(planned),
             "",
             f"Played by {', '.join(told_look(planned.character))}.",
@@ -181,13 +179,19 @@ def story_to_markdown(story: Story) -> str:
     )
 
 
-def told_notes(notes: Sequence[Note]) -> list[str]:
-    """What was done otherwise than the captions say, each thing once, with the keyframes where it was."""
+def told_notes(story: Story) -> list[str]:
+    """What was done otherwise than the captions say, each thing once, with the moments where it was."""
     found: dict[str, list[int]] = {}
-    for note in notes:
+    for action, instead in zip(story.actions, _stand_ins(story), strict=True):
+        if instead:
+            words = (
+                f"“{instead}” is done, the body knows no “{story.planned.script.keyframes[action.keyframe].caption}”"
+            )
+            found.setdefault(words, []).append(action.keyframe)
+    for note in story.motion.notes:
         found.setdefault(note.words, []).append(note.keyframe)
     return [
-        f"keyframe{'s' if len(where) > 1 else ''} {', '.join(map(str, where))}: {words}"
+        f"moment{'s' if len(where) > 1 else ''} {', '.join(str(keyframe + 1) for keyframe in where)}: {words}"
         for words, where in found.items()
     ]
 
@@ -274,11 +278,16 @@ def report_to_dict(story: Story) -> dict[str, Any]:
 def _performances(story: Story) -> Iterator[dict[str, Any]]:
     """The figures of every keyframe, the parts it is made of, what stood in where its own words are not known, and
     what was done otherwise."""
-    told = story.planned.script.keyframes
-    for figure, action, span in zip(story.figures, story.actions, story.segments, strict=True):
-        own = look_of(told[action.keyframe].caption)
-        row = figure.to_dict() | {"performed_as": action.caption if action.caption != own else None}
+    made = zip(story.figures, story.actions, story.segments, _stand_ins(story), strict=True)
+    for figure, action, span, instead in made:
+        row = figure.to_dict() | {"performed_as": instead}
         phases = [phase for phase in story.motion.phases if span[0] <= phase.start < span[1]]
         row["notes"] = [note.words for note in story.motion.notes if note.keyframe == action.keyframe]
         row["phases"] = [phase_to_dict(phase) for phase in phases]
         yield row
+
+
+def _stand_ins(story: Story) -> list[str | None]:
+    """Of every action the known caption that is acted where its keyframe's own words are none of the body's."""
+    own = [look_of(keyframe.caption) for keyframe in story.planned.script.keyframes]
+    return [None if action.caption == own[action.keyframe] else action.caption for action in story.actions]

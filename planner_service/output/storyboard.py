@@ -166,7 +166,7 @@ def _draw_pair(
     _draw_plan(axes, stage, panel, pictures[0])
     figure.figimage(pictures[1], left + PLAN[0] + 4, bottom, origin="upper")
     keyframe, fps = panel.keyframe, stage.motion.fps
-    heading = f"{panel.index}  {keyframe.skill}  ·  {keyframe.furniture}  ·  {keyframe.emotion}"
+    heading = f"{panel.index + 1}  {keyframe.skill.words}  ·  {keyframe.furniture}  ·  {keyframe.emotion}"
     seconds = f"{panel.start / fps:.0f}–{panel.stop / fps:.0f} s"
     right = (left + PLAN[0] + SIDE[0] + 4) / width
     plain: dict[str, Any] = {"x": left / width, "color": INK, "va": "top", "parse_math": False}

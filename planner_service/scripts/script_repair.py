@@ -87,10 +87,12 @@ class Mending(Generic[K]):
             self._note(index, "skill", f"{_told(keyframe)} while already standing", _LEFT_OUT)
             return
         if self.posture is Posture.LYING and keyframe.skill is Skill.STANDUP:
-            self._note(index, "skill", "standup from lying", "getup instead")
+            self._note(index, "skill", "stand up from lying", "get up instead")
             keyframe = keyframe.model_copy(update={"skill": Skill.GETUP, "caption": "get up"})
         if place_of(keyframe) != place_of(self._resting):
-            fault = f"{keyframe.skill} from the {keyframe.furniture} while resting on the {self._resting.furniture}"
+            fault = (
+                f"{keyframe.skill.words} from the {keyframe.furniture} while resting on the {self._resting.furniture}"
+            )
             self._note(index, "furniture", fault, f"rises from the {self._resting.furniture}")
             update: dict[str, Any] = {"furniture": self._resting.furniture}
             update |= {name: getattr(self._resting, name, None) for name in ("room", "object_id")}
@@ -108,7 +110,9 @@ class Mending(Generic[K]):
             return
         skill, caption = RISES[self.posture]
         furniture_word = self._resting.furniture
-        self._note(index, "skill", f"{_told(keyframe)} while {self.posture} on the {furniture_word}", f"{skill} put in")
+        self._note(
+            index, "skill", f"{_told(keyframe)} while {self.posture} on the {furniture_word}", f"{skill.words} put in"
+        )
         update: dict[str, Any] = {"skill": skill, "caption": caption, "emotion": keyframe.emotion, "also": ()}
         update |= {"short_script": None, "already": False}
         update |= {"beat": getattr(keyframe, "beat", None)}  # rising leads to what comes next
@@ -121,7 +125,7 @@ class Mending(Generic[K]):
         if not (stays and self._resting is not None and place_of(self._resting) == place):
             self._be_standing(index, keyframe)
             if self._at != place and not is_floor(keyframe.piece[0]):
-                self._note(index, "skill", f"{_told(keyframe)} without a walk to it", "loco put in")
+                self._note(index, "skill", f"{_told(keyframe)} without a walk to it", "walk put in")
                 self.kept.append(self._walk(keyframe))
                 self._at = place
         if keyframe.skill is Skill.TOUCH:
@@ -171,7 +175,7 @@ def _alike(one: Keyframe, other: Keyframe) -> bool:
 
 
 def _told(keyframe: Keyframe) -> str:
-    return f"{keyframe.skill} ({keyframe.furniture})"
+    return f"{keyframe.skill.words} ({keyframe.furniture})"
 
 
 _ALIASES: Final = {

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Final, Generic, TypeVar
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import Skill
+from motion_backend.motion import Skill, moment
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import PHONE, Vocabulary, sides
 from planner_service.scripts.script import EMOTIONS, Keyframe
@@ -40,7 +40,7 @@ class Problem:
     remedy: str
 
     def __str__(self) -> str:
-        return f"keyframe {self.keyframe}: {self.fault}; {self.remedy}"
+        return f"{moment(self.keyframe)}: {self.fault}; {self.remedy}"
 
 
 Note = Callable[[int, str, str, str], None]
@@ -123,7 +123,7 @@ class Fitting(Generic[K]):
         if score < words.least and words.known(skill, common):
             instead, remedy = common, f'nothing known is near it ({score:.2f}): "{common}" as usual'
         one_and_both = " names one side and both, and" if "both" in sides(caption) and len(sides(caption)) > 1 else ""
-        self._note(index, "caption", f'"{caption}"{one_and_both} is no caption known for {skill}', remedy)
+        self._note(index, "caption", f'"{caption}"{one_and_both} is no caption known for {skill.words}', remedy)
         return keyframe.model_copy(update={"caption": instead})
 
     def _furnished(self, index: int, keyframes: Sequence[K]) -> K:

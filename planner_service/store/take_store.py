@@ -30,3 +30,19 @@ def origin_of(engine: Engine, story_id: str) -> str | None:
     """The story that one derives from; None where it is no take."""
     with engine.connect() as connection:
         return connection.execute(select(takes.c.derived_from).where(takes.c.story_id == story_id)).scalar()
+
+
+def take_number(engine: Engine, story_id: str) -> int:
+    """Which take a story is: the takes of one story, and theirs, are counted from 1 as they were asked for; 0: none."""
+    with engine.connect() as connection:
+        root = story_id
+        while above := connection.execute(select(takes.c.derived_from).where(takes.c.story_id == root)).scalar():
+            root = above
+        family, found = [root], set[str]()
+        while family:
+            family = list(
+                connection.execute(select(takes.c.story_id).where(takes.c.derived_from.in_(family))).scalars()
+            )
+            found.update(family)
+    # Ids sort by the time they were made.
+    return sum(one <= story_id for one in found) if story_id in found else 0

@@ -244,7 +244,7 @@ CASES: dict[str, Case] = {
     "a second line that is not JSON": add("second-line.jsonl", "second-line.jsonl:2", "not JSON"),
     "a script that is not UTF-8": add("latin-script.json", "latin-script.json", "UTF-8", "byte 11"),
     "an unknown skill": add("skill.json", "skill.json", "keyframes.0.skill", "'loco'"),
-    "unknown furniture": add("furniture.json", "my-own", "keyframe 0", "furniture", "trampoline"),
+    "unknown furniture": add("furniture.json", "my-own", "moment 1", "furniture", "trampoline"),
     "a field too many": add("extra.json", "extra.json", "mood", "not permitted"),
     "no keyframes": add("no-keyframes.json", "keyframes", "at least 1"),
     "an empty script file": add("empty.json", "empty.json", "no short script"),

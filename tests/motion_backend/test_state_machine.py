@@ -163,14 +163,14 @@ def test_done_means_near_enough_for_as_long_as_is_said(skill: Skill) -> None:
     assert shortfall(action, Kinematics.of(motion)) == ""
     last = motion.phases[-1]
     early = motion.part(0, last.start if skill is not Skill.LOCO else len(motion) // 3)
-    assert "keyframe 0: " in shortfall(action, Kinematics.of(early))
+    assert "moment 1: " in shortfall(action, Kinematics.of(early))
     assert f"for {DONE[skill].seconds:.1f} s" in shortfall(action, Kinematics.of(early))
 
 
 def test_who_has_not_stood_has_not_risen() -> None:
     motion, _ = made(Posture.LYING, Skill.GETUP)
     body = Kinematics.of(motion.part(0, len(motion) // 2))
-    assert "had stood for 0.0 s" in shortfall(ACTIONS[Skill.GETUP], body)
+    assert "and did for 0.0 s" in shortfall(ACTIONS[Skill.GETUP], body)
 
 
 @given(st.sampled_from(Posture), st.sampled_from(sorted(ACTIONS)), st.floats(0, 50), st.floats(0, 50))

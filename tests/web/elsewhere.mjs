@@ -38,11 +38,20 @@ async function move(page, id) {
   return { unknown, spoiled, own, wrong, sideways, layouts, take: storyId };
 }
 
+/** The same, moved by another backend: the form beside the film names it. */
+async function withBackend(page, id, backend) {
+  await page.goto(`/#/stories/${id}`);
+  await page.getByRole("button", { name: "Change the script" }).click();
+  await page.locator("#take-backend").selectOption(backend);
+  await page.getByRole("button", { name: "Play this" }).click();
+  const { storyId } = await until(page, (seen) => seen.storyId !== id && seen.playing);
+  return storyId;
+}
+
 /** Where both films are. */
 const places = (page) => page.locator(".side input[type=range]").evaluateAll((all) => all.map((slider) => Number(slider.value)));
 
 async function compareBoth(page) {
-  await page.getByRole("link", { name: "See both side by side" }).click();
   await page.locator(".differs:not([hidden])").waitFor();
   let [before, now] = [[0, 0], await places(page)];
   // They wait for each other, then both go on.
@@ -50,10 +59,18 @@ async function compareBoth(page) {
     await page.waitForTimeout(100);
     [before, now] = [before.some(Boolean) ? before : now, await places(page)];
   }
-  return { heads: await page.locator(".side h2").allInnerTexts(), differs: await page.locator(".differs").innerText(), sideways: await overhang(page) };
+  await page.locator(".side .movers").nth(1).waitFor();
+  const each = (part) => page.locator(`.side ${part}`).allInnerTexts();
+  const [heads, figures, movers] = [await each("h2"), await each(".figures"), await each(".movers")];
+  return { title: await page.locator("h1").innerText(), heads, figures, movers, differs: await page.locator(".differs").innerText(), sideways: await overhang(page) };
 }
 
 await scene(async (page, id) => {
   const moved = await move(page, id);
-  return { moved, both: await compareBoth(page) };
+  const beside = () => page.getByRole("link", { name: "See both side by side" }).click();
+  await beside();
+  const both = await compareBoth(page);
+  const learned = await withBackend(page, id, "diffusion");
+  await beside();
+  return { moved, both, learned, backends: await compareBoth(page) };
 });

@@ -358,9 +358,28 @@ def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side
     assert (take["state"], take["derived_from"]) == ("succeeded", brief["id"])
     assert [room["layout_id"] for room in take["home"]["rooms"]] == ["page-den"]
     both = told["both"]
-    assert [head.split(" ")[1] for head in both["heads"]] == ["story", "take"]
+    assert [head.split(" · ")[0] for head in both["heads"]] == ["The story", "Take 1"]
     assert "What differs" in both["differs"]
     assert both["sideways"] <= 0
+
+    learned, backends = finished(client, told["learned"]), told["backends"]
+    stories = (finished(client, brief["id"]), learned)
+    assert (learned["backend"], learned["take"]) == ("diffusion", 2)
+    assert backends["heads"] == [
+        f"The story · procedural, seed {brief['seed']}",
+        f"Take 2 · diffusion, seed {brief['seed']}",
+    ]
+    assert backends["title"] == f"{brief['title']}, side by side"
+    for story, figures, movers in zip(stories, backends["figures"], backends["movers"], strict=True):
+        motion = story["report"]["motion"]
+        assert f"{motion['reached']} of {motion['keyframes']}" in figures
+        assert f"{motion['seconds']:.0f} s" in figures
+        for name, share in motion["made_by"].items():
+            assert f"{name} (" in movers
+            assert f"{100 * share:.1f} % of the film" in movers
+    reasons = {phase["fallback"] for one in learned["report"]["keyframes"] for phase in one["phases"]} - {None}
+    told_reasons = backends["movers"][1].count(" %: ")
+    assert told_reasons >= len(reasons) > 0, "each reason is told of the backend that stood in"
     client.delete("/v1/layouts/page-den").raise_for_status()
 
 

@@ -1,6 +1,7 @@
 /** The service's resources, and the calls that the page makes. */
 
 import type { Emotion } from "./emotions";
+import type { Phase } from "./movers";
 import type { Letters, Span } from "./spans";
 
 export type State = "queued" | "running" | "succeeded" | "failed" | "cancelled";
@@ -98,6 +99,7 @@ export interface KeyframeFigures {
   readonly notes?: readonly string[];
   /** The known caption that was acted where the body knows no word of its own. */
   readonly performed_as?: string | null;
+  readonly phases?: readonly Phase[];
 }
 
 export interface Report {
@@ -142,6 +144,8 @@ export interface Story extends Summary {
   readonly report: Report | null;
   /** Moments, from the first on, whose motion was taken over from the story it derives from. */
   readonly reused: number;
+  /** Which take it is of the story it derives from; 0 for one of its own, and before that is known. */
+  readonly take: number;
 }
 
 export type Point2 = readonly [number, number];

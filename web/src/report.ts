@@ -1,7 +1,8 @@
 /** How well the story was acted, in plain words, and honest labels of what made it. */
 
-import type { Beat, Keyframe, KeyframeFigures, Story } from "./api";
+import type { Beat, Keyframe, KeyframeFigures, Report, Story } from "./api";
 import { fill, h } from "./dom";
+import { moverList, type Phase } from "./movers";
 import { badge, isOtherwise, lacking, legend, outcomeOf } from "./outcomes";
 import { beatsWords, capital, centimetres, percent, placeWords, SKILL_WORDS } from "./words";
 
@@ -19,20 +20,11 @@ export function plannerWords(planner: string | null): string {
 export function encoderWords(encoder: string | null): string {
   if (!encoder) return "No short scripts were looked up.";
   if (encoder === "hashing") return "Scripts found by their words (hashing), the stand-in where no sentence encoder is.";
-  return `Scripts found by meaning with the sentence encoder ${encoder}. It and the classifier of clauses are all that is learned here.`;
+  return `Scripts found by meaning with the sentence encoder ${encoder}. It and the classifier of clauses are all that is learned in planning.`;
 }
 
-export function backendWords(backend: string): string {
-  if (backend === "procedural") return "Procedural: rules and inverse kinematics. Nothing learned, nothing simulated, no force.";
-  return `Moved by the backend “${backend}”.`;
-}
-
-/** Fill a section with a story's report; false while there is none. */
-export function showReport(section: HTMLElement, story: Story, seek: (keyframe: number) => void): boolean {
-  const { report } = story;
-  if (!report) return false;
-  const { motion } = report;
-  const other = report.screen_time_not_acted;
+/** A story's figures, each with what it counts. */
+export function figureList({ motion, screen_time_not_acted: other }: Report): HTMLElement {
   const figures: [string, string][] = [
     ...(other === null ? [] : ([[percent(other), "of the film shows none of the beats that are acted"]] as [string, string][])),
     [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
@@ -41,6 +33,13 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
     ...(motion.slip === null ? [] : ([[`${motion.slip.toFixed(1)} cm/s`, "standing feet slip; people's about 3"]] as [string, string][])),
     [`${Math.round(motion.seconds)} s`, "of motion at 30 frames a second"],
   ];
+  return h("dl", { class: "figures" }, ...figures.flatMap(([value, words]) => [h("dt", {}, value), h("dd", {}, words)]));
+}
+
+/** Fill a section with a story's report; false while there is none. */
+export function showReport(section: HTMLElement, story: Story, seek: (keyframe: number) => void): boolean {
+  const { report } = story;
+  if (!report) return false;
   const remarks = report.keyframes.flatMap((figure) => remark(figure, story.keyframes[figure.keyframe], seek));
   fill(
     section,
@@ -48,12 +47,17 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
     story.beats.length ? h("p", { class: "acted" }, h("b", {}, beatsWords(story.beats))) : null,
     story.beats.length ? h("ul", { class: "outcomes", "aria-label": "What became of the beats of your theme" }, ...story.beats.map(became)) : null,
     legend(story.beats, report.keyframes),
-    h("dl", { class: "figures" }, ...figures.flatMap(([value, words]) => [h("dt", {}, value), h("dd", {}, words)])),
+    figureList(report),
     remarks.length ? h("ul", { class: "remarks" }, ...remarks) : h("p", { class: "fine" }, "Nothing stands out: every moment came out as it was meant to."),
-    h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder)), h("li", {}, backendWords(report.backend))),
+    h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder))),
+    h("h3", {}, "What moved the body"),
+    moverList(phasesOf(report)),
   );
   return true;
 }
+
+/** All that the film is made of, piece after piece; stories made by earlier versions have none. */
+export const phasesOf = (report: Report): Phase[] => report.keyframes.flatMap(({ phases }) => phases ?? []);
 
 function became(beat: Beat): HTMLElement {
   const lacks = lacking(beat);

@@ -4,7 +4,9 @@ import { ApiError, getStory, type Keyframe, type Story } from "./api";
 import { fill, h } from "./dom";
 import { follow } from "./events";
 import { Film } from "./film";
-import { placeWords, SKILL_WORDS } from "./words";
+import { moverList } from "./movers";
+import { figureList, phasesOf } from "./report";
+import { beatsWords, placeWords, SKILL_WORDS, takeWords } from "./words";
 
 const LOOK_MS = 100;
 
@@ -12,6 +14,8 @@ interface Side {
   readonly id: string;
   readonly film: Film;
   readonly head: HTMLElement;
+  /** Figures and what moved the body, once they are known. */
+  readonly facts: HTMLElement;
   story: Story | null;
   end: (() => void) | null;
 }
@@ -20,16 +24,17 @@ export class SideBySide {
   readonly element = h("article", { class: "pair" });
   readonly #sides: readonly Side[];
   readonly #differs = h("section", { class: "differs", hidden: true });
+  readonly #title = h("h1", {}, "Side by side");
   readonly #timer: number;
 
   /** Both films begin with the keyframe `from`, or at their beginning; keys are for both. */
   constructor(ids: readonly string[], from: number | null) {
     document.title = "Side by side · SIMS stories";
-    this.#sides = ids.map((id) => ({ id, film: new Film(id, () => undefined, from), head: h("h2", {}, "…"), story: null, end: null }));
+    this.#sides = ids.map((id) => ({ id, film: new Film(id, () => undefined, from), head: h("h2", {}, "…"), facts: h("div", { class: "facts" }), story: null, end: null }));
     fill(
       this.element,
-      h("h1", {}, "Side by side"),
-      h("div", { class: "sides" }, ...this.#sides.map(({ head, film }) => h("section", { class: "side" }, head, film.element))),
+      this.#title,
+      h("div", { class: "sides" }, ...this.#sides.map(({ head, film, facts }) => h("section", { class: "side" }, head, film.element, facts))),
       this.#differs,
     );
     for (const side of this.#sides) void this.#refresh(side);
@@ -68,9 +73,10 @@ export class SideBySide {
       side.film.notice(h("div", { class: "outcome" }, h("p", {}, error.detail)));
       return;
     }
-    const { story, film, head } = side;
-    const name = story.derived_from ? "The take" : "The story";
-    fill(head, h("a", { href: `#/stories/${story.id}` }, name), ` ${story.backend}, seed ${story.seed}`);
+    const { story, film, head, facts } = side;
+    fill(head, h("a", { href: `#/stories/${story.id}` }, takeWords(story)), ` · ${story.backend}, seed ${story.seed}`);
+    if (story.title) this.#title.textContent = `${story.title}, side by side`;
+    if (story.report) fill(facts, story.beats.length ? h("p", {}, beatsWords(story.beats)) : null, figureList(story.report), moverList(phasesOf(story.report)));
     film.update(story);
     const again = (): void => void this.#refresh(side);
     const making = story.state === "queued" || story.state === "running";

@@ -169,8 +169,9 @@ export class Stage {
     this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.#sharpness);
     this.#renderer.setSize(width, height);
     this.cameraMan.resize(width, height);
-    // Another size empties the canvas, and it would be shown so until the next picture.
-    this.#draw();
+    // Another size empties the canvas, and it would be shown so until the next picture; before there is a home the
+    // curtain is closed, and software would draw the empty stage for as long as the home is waited for.
+    if (this.#home) this.#draw();
   }
 
   /** Draw if anything has changed; seconds since the last call. */

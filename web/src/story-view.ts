@@ -13,7 +13,7 @@ import { showReport } from "./report";
 import { ScriptList } from "./script-list";
 import { Steps } from "./steps";
 import { Telling } from "./telling";
-import { capital, count } from "./words";
+import { capital, count, takeWords } from "./words";
 
 const AGAIN_MS = 2500;
 
@@ -140,7 +140,7 @@ export class StoryView {
     this.#origin.hidden = !story.derived_from;
     if (!story.derived_from) return;
     const same = story.reused ? `; its first ${count(story.reused, "moment")} ${story.reused === 1 ? "is" : "are"} the same` : "";
-    fill(this.#origin, "A take of ", h("a", { href: `#/stories/${story.derived_from}` }, "the story before"), `${same}. `, h("a", { href: `#/stories/${story.id}?beside=${story.derived_from}` }, "See both side by side"));
+    fill(this.#origin, `${takeWords(story)}, made from `, h("a", { href: `#/stories/${story.derived_from}` }, "the one before"), `${same}. `, h("a", { href: `#/stories/${story.id}?beside=${story.derived_from}` }, "See both side by side"));
   }
 
   /** Beside the film the script can be changed; its code is fetched when it is first asked for. */

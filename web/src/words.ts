@@ -1,6 +1,6 @@
 /** Words that a person understands for what the service names in short. */
 
-import type { Beat, Keyframe, Skill, Stage } from "./api";
+import type { Beat, Keyframe, Skill, Stage, Story } from "./api";
 
 export const STAGES: readonly Stage[] = ["plan", "furnish", "narrate", "act", "move", "judge", "film"];
 
@@ -67,6 +67,12 @@ export function noteWords(note: string): string {
   return note
     .replace(/keyframe (\d+)/g, (_, index: string) => `moment ${Number(index) + 1}`)
     .replace(/\b(loco|sitdown|standup|getup|liedown)\b/g, (skill) => SKILL_WORDS[skill as Skill]);
+}
+
+/** What a story is called beside others of its kind. */
+export function takeWords({ take, derived_from }: Pick<Story, "take" | "derived_from">): string {
+  if (!derived_from) return "The story";
+  return take ? `Take ${take}` : "A take";
 }
 
 /** "6 of 7 beats of your theme are acted."; of what is asked for, since what is to be left undone is not acted. */

@@ -398,6 +398,11 @@ class StoryShown(StorySummary):
     reused: int = Field(
         0, description="Keyframes, from the first on, whose motion was taken over from `derived_from` as it was."
     )
+    take: int = Field(
+        0,
+        description="Which take it is: those of a story, and theirs, are counted as asked for; 0 for none, and "
+        "until places are found.",
+    )
     short_scripts: list[ShortScriptChosen] = []
     graph: GraphShown = Field(default_factory=GraphShown)
     home: HomeShown | None = None

@@ -78,6 +78,7 @@ def story_shown(record: Record) -> Json:
         "beats": _beats(made, keyframes, segments),
         "keyframes": keyframes,
         "reused": made.get("reused", 0),
+        "take": made.get("take", 0),
         "motion": {"frames": frames, "duration": round(frames / FPS, 3), "complete": complete},
         "report": made.get("report"),
     }

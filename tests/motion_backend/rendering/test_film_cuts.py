@@ -14,11 +14,12 @@ from motion_backend.body.cast import Role
 from motion_backend.motion import Emotion, Motion, PhaseKind, join
 from motion_backend.rendering.camera import visible_share
 from motion_backend.rendering.film_cuts import SHORTEST, Cut, Framing, Subject, film_cuts
-from motion_backend.rendering.film_shots import ALIKE, WIDEST_NEAR, FilmShot, film_shots
+from motion_backend.rendering.film_shots import ALIKE, NO_LONGER_NEAR, WIDEST_NEAR, FilmShot, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.rasterizer import orbit
 from motion_backend.rotations import rotate, wrap
 from motion_backend.skeleton import INDEX
+from scene_graphs.affordances.affordances import spots
 
 ASPECT = 16 / 9
 SAD = Role(emotions={0: Emotion.HAPPY, 1: Emotion.SAD, 2: Emotion.SAD})
@@ -115,7 +116,9 @@ def test_a_camera_from_near_is_nearer_and_neither_furniture_nor_the_body_itself_
     for shot in close_ups():
         bodies = Appearances.of(motion, framings[shot.start], ASPECT)
         assert bodies.shown(shot.scene, shot.camera) >= 0.9
-        assert np.linalg.norm(np.subtract(shot.camera.eye, shot.camera.target)) < 2.2
+        # With a hand, head and shoulders are in the picture.
+        farthest = 2.2 if shot.subject is Subject.FACE else NO_LONGER_NEAR
+        assert np.linalg.norm(np.subtract(shot.camera.eye, shot.camera.target)) < farthest
 
 
 def test_cuts_between_shots_of_the_whole_body_mostly_change_the_view():
@@ -138,3 +141,18 @@ def test_a_body_hides_its_own_hand_from_a_camera_behind_its_back():
     behind = float(np.arctan2(*(chest - hand)[[0, 2]]))
     shown = [bodies.shares([], orbit((x, y, z), 1.6, behind + turn, 0.05))[0, 1] for turn in (0.0, np.pi / 2, np.pi)]
     assert shown[0] < 0.4 < min(shown[1:])
+
+
+@for_each(("name", "height"), [("shelf", "low"), ("shelf", "medium"), ("shelf", "high")])
+def test_a_hand_is_seen_from_near_with_head_and_shoulders_of_whose_it_is(name: str, height: str) -> None:
+    if not any(spot.height == height for spot in spots(SMALL.object(f"0/{name}"), "touch")):
+        return
+    motion = touched(name, height, "touch").motion
+    joints = motion.joint_positions().astype(np.float64)
+    near = [one for one in film_shots(SMALL, motion, [0], ASPECT) if one.subject is Subject.HANDS]
+    assert near or height != "medium"
+    for shot in near:
+        for frame in np.linspace(shot.start, shot.stop - 1, 5).round().astype(int):
+            who = joints[frame, [INDEX[part] for part in ("head", "left_shoulder", "right_shoulder")]]
+            x, y, depth = np.moveaxis(shot.camera.project(shot.camera.view(who), (160, 90)), -1, 0)
+            assert ((x > 0) & (x < 160) & (y > 0) & (y < 90) & (depth > 0)).all(), (shot.start, frame)

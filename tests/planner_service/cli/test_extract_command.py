@@ -125,7 +125,7 @@ def test_a_scripted_model_is_named_and_another_language_is_passed_on(
     (tmp_path / "de.txt").write_text(GERMAN)
     shown = told(sims("extract", tmp_path / "de.txt"))
     assert "1 short script of 1 scene; by llm:scripted" in shown
-    assert "loco put in" in shown
+    assert "walk put in" in shown
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from motion_backend.motion import Skill
 from planner_service.cli.play import MAX_FAULTS, read_script, unknown_captions
 from planner_service.cli.story import new_folder
 from planner_service.pipeline import RequestError
+from planner_service.scripts.captions import captions
+from planner_service.scripts.script import Keyframe
 from planner_service.tasks.task_plan import MAX_KEYFRAMES
 
 WALK = {"skill": "loco", "emotion": "sad", "caption": "walk", "furniture": "floor"}
@@ -33,10 +36,10 @@ def test_a_list_a_script_and_a_story_are_the_same_keyframes(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("value", "said"),
     [
-        ([SIT | {"furniture": "soffa"}], "keyframes.0.furniture: 'soffa' is not known; perhaps"),
-        ([WALK, {"skill": "fly", "caption": "walk"}], "keyframes.1.skill: Input should be"),
-        ([WALK | {"colour": "red"}], "keyframes.0.colour: Extra inputs"),
-        ([3], "keyframes.0: Input should be"),
+        ([SIT | {"furniture": "soffa"}], "moment 1, furniture: 'soffa' is not known; perhaps 'sofa', 'sofa bed'"),
+        ([WALK, {"skill": "fly", "caption": "walk"}], "moment 2, skill: Input should be"),
+        ([WALK | {"colour": "red"}], "moment 1, colour: Extra inputs"),
+        ([3], "moment 1: Input should be"),
         ([], "holds no keyframes"),
         ({"title": "x"}, "holds no keyframes"),
         ("{", "is not JSON"),
@@ -54,20 +57,39 @@ def test_all_that_is_wrong_is_told_at_once_and_within_bounds(tmp_path: Path) -> 
     bad = {"skill": "fly", "furniture": "soffa", "colour": "red"}
     with pytest.raises(RequestError) as refused:
         read_script(written(tmp_path, [WALK, bad, SIT, bad]))
-    for number in (1, 3):
+    for number in (2, 4):
         for field in ("skill", "caption", "colour", "furniture"):
-            assert str(refused.value).count(f"keyframes.{number}.{field}: ") == 1
-    assert "keyframes.0" not in str(refused.value)
+            assert str(refused.value).count(f"moment {number}, {field}: ") == 1
+    assert "moment 1," not in str(refused.value)
     with pytest.raises(RequestError) as refused:
         read_script(written(tmp_path, [bad] * MAX_KEYFRAMES))
-    assert str(refused.value).count("keyframes.") == MAX_FAULTS
+    assert str(refused.value).count("moment ") == MAX_FAULTS
     assert str(refused.value).endswith(f"and {4 * MAX_KEYFRAMES - MAX_FAULTS} more")
 
 
 def test_captions_that_the_body_does_not_know_are_shown_with_those_it_does(tmp_path: Path) -> None:
     (known, other), _ = read_script(written(tmp_path, [SIT, SIT | {"caption": "siting stil"}]))
     (line,) = unknown_captions([known, other])
-    assert line.startswith("keyframes.1.caption: 'siting stil' is read word by word; perhaps 'sitting still'")
+    assert line.startswith("moment 2, caption: 'siting stil' is unknown to the body, which does ")
+    near = line.partition("; perhaps ")[2].split(", ")
+    assert near[0] == "'sitting still'"
+    assert len(set(near)) == len(near)
+
+
+def test_a_caption_that_is_read_as_another_is_said_before_anything_is_made(tmp_path: Path) -> None:
+    kick = {"skill": "touch", "emotion": "angry", "caption": "kick it", "furniture": "cabinet"}
+    turned = {"skill": "loco", "emotion": "neutral", "caption": "moonwalk backwards", "furniture": "floor"}
+    first, second = unknown_captions(read_script(written(tmp_path, [kick, turned]))[0])
+    assert first.startswith("moment 1, caption: 'kick it' is unknown to the body, which does 'touch medium height'")
+    assert second.startswith("moment 2, caption: 'moonwalk backwards' is read word by word")
+
+
+def test_no_caption_is_suggested_twice() -> None:
+    for skill, rows in captions().items():
+        asked = [Keyframe(skill=Skill(skill), caption=f"{row} x", furniture="sofa", emotion="neutral") for row in rows]
+        for line in unknown_captions(asked):
+            near = line.partition("; perhaps ")[2]
+            assert not near or all(near.count(repr(row)) <= 1 for row in rows), line
 
 
 def test_a_file_that_is_not_there_is_said(tmp_path: Path) -> None:

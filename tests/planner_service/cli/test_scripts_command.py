@@ -141,5 +141,5 @@ def test_checking_names_captions_and_furniture_that_are_not_there_where_that_is_
     done = CliRunner().invoke(app, wanting, env=sims.settings)
     told = " ".join(done.output.split())
     assert done.exit_code == 1
-    assert 'keyframe 1: "sits like a king" is no caption known for sitdown' in told
-    assert "keyframe 1: the home has no dining chair" in told
+    assert 'moment 2: "sits like a king" is no caption known for sit down' in told
+    assert "moment 2: the home has no dining chair" in told

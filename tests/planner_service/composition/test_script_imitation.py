@@ -103,7 +103,7 @@ def test_what_lacks_a_walk_is_repaired_and_that_is_told() -> None:
     row = {"summary": RING, "keyframes": [keyframe("touch", "wardrobe"), keyframe("sit", "bed")]}
     found = made([row], [written(LETTER, "chair")])
     assert [one.skill for one in found.scripts[0].keyframes] == ["loco", "touch", "loco", "sitdown"]
-    assert [note for note in found.notes if note.startswith(found.scripts[0].id) and "loco put in" in note]
+    assert [note for note in found.notes if note.startswith(found.scripts[0].id) and "walk put in" in note]
 
 
 def test_a_models_own_words_for_how_the_body_looks_become_known_captions() -> None:

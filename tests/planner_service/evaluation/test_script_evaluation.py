@@ -82,11 +82,11 @@ def test_a_script_walks_to_everything_and_rises_before_it_goes_on(monkeypatch: p
 
 def test_a_script_that_cannot_be_grounded_counts_as_failed(monkeypatch: pytest.MonkeyPatch) -> None:
     def nowhere(*_: object) -> None:
-        raise UnreachableError("keyframe 0: no way there")
+        raise UnreachableError("moment 1: no way there")
 
     monkeypatch.setattr(script_evaluation, "act", nowhere)
     done = run_script(TRIAL)
-    assert (done.success, done.steps, done.fault) == (False, 0, "keyframe 0: no way there")
+    assert (done.success, done.steps, done.fault) == (False, 0, "moment 1: no way there")
 
 
 class Simulating:

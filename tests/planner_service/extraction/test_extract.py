@@ -205,7 +205,7 @@ def test_a_model_finds_scripts_and_they_are_mended_and_labelled() -> None:
     assert script.origin is not None
     assert script.origin.by == "llm:scripted-a"
     assert [keyframe.skill for keyframe in script.keyframes] == ["loco", "sitdown"]
-    assert "loco put in" in made.scripts[0].repairs[0]
+    assert "walk put in" in made.scripts[0].repairs[0]
     assert made.scenes[1].reason == "the model found nothing in it that a body can act"
 
 

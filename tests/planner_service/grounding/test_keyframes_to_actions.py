@@ -145,7 +145,7 @@ def test_a_body_looks_where_it_was_told_to_or_as_its_last_walk_came_in() -> None
 
 
 def test_nothing_can_be_touched_in_the_air() -> None:
-    with pytest.raises(UnreachableError, match="keyframe 0"):
+    with pytest.raises(UnreachableError, match="moment 1"):
         grounded(("touch", "touch medium height", None))
 
 

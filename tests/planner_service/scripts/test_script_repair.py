@@ -154,7 +154,7 @@ def test_an_unknown_caption_becomes_the_nearest_known_one_or_the_usual_one() -> 
     (walk, sit), repairs = repair(rows, vocabulary=WORDS)
     assert (walk.caption, sit.caption) == ("walk on tiptoes", "sitting with head bowed, hands resting on thighs")
     assert repairs[0] == (
-        'keyframe 0: "tiptoe quietly" is no caption known for loco; "walk on tiptoes" is nearest (0.67)'
+        'moment 1: "tiptoe quietly" is no caption known for walk; "walk on tiptoes" is nearest (0.67)'
     )
     assert "nothing known is near it" in repairs[1]
     assert {problem.field for problem in check(rows, vocabulary=WORDS)} == {"caption"}
@@ -233,7 +233,7 @@ def test_the_same_word_in_another_room_is_another_place() -> None:
 def test_problems_name_the_keyframe_the_fault_and_the_remedy() -> None:
     problems = check(script("touch spaceship, purple"))
     assert [problem.field for problem in problems] == ["emotion", "furniture", "skill"]
-    assert str(problems[1]) == 'keyframe 0: the furniture word "spaceship" is not known; uses the table instead'
+    assert str(problems[1]) == 'moment 1: the furniture word "spaceship" is not known; uses the table instead'
 
 
 def test_our_own_short_scripts_use_known_words_only() -> None:

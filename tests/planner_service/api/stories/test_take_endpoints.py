@@ -237,3 +237,19 @@ async def test_a_take_of_a_story_is_told_anew(tmp_path: Path) -> None:
         assert [one["text"] for one in take["beats"]] == [one["text"] for one in origin["beats"]]
         assert take["text"] != origin["text"]
         assert take["theme"] == origin["theme"]
+
+
+async def test_takes_of_a_story_and_of_its_takes_are_counted_as_they_were_asked_for(app: FastAPI) -> None:
+    maker = desk(app)
+    async with calling(app) as client:
+        origin = await posted(client, "/v1/motions", MOTION)
+        grounded(origin["id"], maker)
+        first = await posted(client, origin["links"]["takes"], {"seed": 1})
+        grounded(first["id"], maker)
+        third = await posted(client, first["links"]["takes"], {"seed": 2})
+        fourth = await posted(client, origin["links"]["takes"], {"seed": 3})
+        for one in (fourth, third):  # in whatever order they are made
+            grounded(one["id"], maker)
+        other = await posted(client, "/v1/motions", MOTION)
+        grounded(other["id"], maker)
+        assert [(await look(client, one))["take"] for one in (origin, first, third, fourth, other)] == [0, 1, 2, 3, 0]
