@@ -15,7 +15,6 @@ from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from motion_backend.motion import FPS
 from motion_backend.physics.contact_forces import ContactReader, Pressure, root_force
@@ -53,8 +52,6 @@ CHANGE_ON_FLOOR: Final = 240.0
 ON_FLOOR: Final = (Doing.GOES_DOWN, Doing.LIES, Doing.RISES)
 SLIDING: Final = 10.0
 """Price of the velocity of sole points that the plan has planted, per (m/s)². Prices on their places make falls."""
-TOUCHES: Final = 0.015
-"""Where more than feet touches something, soles that are lower than this are not to slide either (metres at 1.70 m)."""
 MOST_OFFSET: Final = 0.5
 """No control is farther from the plan's (radians)."""
 FADES: Final = 0.9
@@ -255,23 +252,14 @@ class Controller:
         off[NV:] = now.qvel - planned.qvel
         return off
 
-    def _stands(self, at: int) -> NDArray[np.bool_]:
-        """Heel and ball of either foot that are not to slide: planted ones, and on the floor those that touch it, of
-        the body as its data have it. (2, 2)."""
-        planted: NDArray[np.bool_] = self.reference.planted[at].reshape(2, 2)
-        if self.reference.doing[at] not in ON_FLOOR:
-            return planted
-        heights = np.stack([self.contacts.sole_points(self.data, side)[:, 1] for side in range(2)])
-        return np.asarray(planted | (heights.reshape(2, 2, 2).min(axis=2) < TOUCHES * self.contacts.scale))
-
     def _sliding(self, at: int) -> float:
         """The price of planted points that move, of the body as its data have it."""
-        mujoco, model, data, cost, velocity = engine(), self.models.fine, self.data, 0.0, np.empty(6)
-        mujoco.mj_kinematics(model, data)
-        if not (planted := self._stands(at)).any():
+        planted = self.reference.planted[at].reshape(2, 2)
+        if not planted.any():
             return 0.0
-        mujoco.mj_comPos(model, data)
-        mujoco.mj_comVel(model, data)
+        mujoco, model, data, cost, velocity = engine(), self.models.fine, self.data, 0.0, np.empty(6)
+        for stage in (mujoco.mj_kinematics, mujoco.mj_comPos, mujoco.mj_comVel):
+            stage(model, data)
         for side, (foot, _) in enumerate(self.contacts.feet):
             if planted[side].any():
                 mujoco.mj_objectVelocity(model, data, mujoco.mjtObj.mjOBJ_XBODY, foot, velocity, 0)
@@ -286,9 +274,10 @@ class Controller:
     def _planted_rows(self, at: int) -> Array | None:
         """Jacobian rows (3 N, 36) of the velocities of planted sole points; None where there are none."""
         mujoco, model, data = engine(), self.models.fine, self.data
-        mujoco.mj_kinematics(model, data)
-        if not (planted := self._stands(at)).any():
+        planted = self.reference.planted[at].reshape(2, 2)
+        if not planted.any():
             return None
+        mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         rows = []
         for side, (foot, _) in enumerate(self.contacts.feet):

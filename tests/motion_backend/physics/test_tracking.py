@@ -225,20 +225,6 @@ def test_controls_change_less_where_more_than_feet_touches_something() -> None:
     assert changed[Doing.LIES] < changed[Doing.OTHER]
 
 
-def test_soles_that_touch_the_floor_are_not_to_slide_where_more_than_feet_touches_it() -> None:
-    plan = replace(plan_of(walk()), contacts=np.zeros((len(walk()), 4)))
-    for doing, touching in ((Doing.LIES, True), (Doing.OTHER, False)):
-        tracker = tracker_of(all_along(plan, doing))
-        data, reader = tracker._scratch()
-        controller = Controller(empty_room(), data, tracker.reference, reader)
-        for lifted, stands in ((0.0, touching), (0.5, False)):
-            data.qpos[:], data.qvel[:] = tracker.reference.qpos[4], 0.0
-            data.qpos[1] += lifted
-            data.qvel[0] = 1.0
-            assert (controller._sliding(4) > 0) == stands
-            assert (controller._planted_rows(4) is not None) == stands
-
-
 def test_the_leg_that_swings_is_to_be_where_it_is_planned_and_the_one_that_stands_to_hold_the_pelvis_up() -> None:
     plan = plan_of(walk())
     stands = plan.contacts.reshape(-1, 2, 2).max(axis=2) > 0.5
