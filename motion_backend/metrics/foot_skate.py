@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend.body.scene_collision import WALL, Obstacles
 from motion_backend.metrics.joint_trajectories import Kinematics
@@ -46,8 +47,20 @@ def support_slip(body: Kinematics) -> float:
     """Mean horizontal speed of the best supported point of the soles, cm/s: of those that are low in two neighbouring
     frames the one that moves least. Toes that swing low are not taken for a foot that slides; recorded walkers have 3.
     """
+    return _slip(body, np.ones((len(body.soles), 2), dtype=bool))
+
+
+def carried_slip(body: Kinematics) -> float:
+    """The same of feet that carry, as the motion's contacts say: of a simulated body those that press on something.
+    Heels that swing over a floor to where one lies are no slip in it, and heels that lie on it and are drawn up are."""
+    return _slip(body, body.motion.contacts.reshape(-1, 2, 2).max(axis=2) > 0.5)
+
+
+def _slip(body: Kinematics, counts: NDArray[np.bool_]) -> float:
+    """Of feet that count, by frame and side (T, 2)."""
     soles = body.soles.reshape(len(body.soles), -1, 3)
     low = soles[..., 1] < LOW * body.motion.skeleton.scale
+    low &= np.repeat(counts, soles.shape[1] // 2, axis=1)
     speed = np.linalg.norm(np.diff(soles[..., [0, 2]], axis=0), axis=-1) * body.motion.fps * 100
     least = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
     stands = np.isfinite(least)

@@ -23,6 +23,7 @@ SHOWN = {
     "reached": (100, "reached, %"), "contact_error": (100, "contact, cm"),
     "execution": (1, "execution, s"), "weight_error": (100, "off weight, %"),
     "slip": (1, "slip, cm/s"), "slip_planned": (1, "plan's, cm/s"),
+    "slip_carried": (1, "carrying, cm/s"),
     "skate": (1, "skate, cm/s"), "skate_ratio": (100, "skate, %"),
     "skate_ratio_planned": (100, "plan's, %"), "floor_pen": (1000, "in floor, mm"),
     "jerk_ratio": (1, "jerk / plan's"), "away": (100, "off plan, cm"), "cpu": (1, "CPU-s / s"),

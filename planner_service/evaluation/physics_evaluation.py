@@ -18,7 +18,7 @@ import numpy as np
 
 from motion_backend.backends import DEFAULT_BACKEND
 from motion_backend.director import Director, shares
-from motion_backend.metrics.foot_skate import floor_penetration, skate_ratio, skate_speed, support_slip
+from motion_backend.metrics.foot_skate import carried_slip, floor_penetration, skate_ratio, skate_speed, support_slip
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.smoothness import jerk
 from motion_backend.motion import Motion, Skill
@@ -114,6 +114,7 @@ def _feet(motion: Motion, plan: Motion) -> dict[str, float]:
     return {
         "slip": support_slip(body),
         "slip_planned": support_slip(planned),
+        "slip_carried": carried_slip(body),
         "skate": skate_speed(body),
         "skate_ratio": skate_ratio(body),
         "skate_ratio_planned": skate_ratio(planned),
@@ -174,6 +175,7 @@ def figures_of(rows: Sequence[Row]) -> dict[str, tuple[float, float, float]]:
         "weight_error",
         "slip",
         "slip_planned",
+        "slip_carried",
         "skate",
         "skate_ratio",
         "skate_ratio_planned",

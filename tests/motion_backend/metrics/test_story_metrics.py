@@ -59,6 +59,12 @@ def test_slow_creeping_is_skate_speed_but_not_gmd_skating() -> None:
 def test_the_best_supported_point_slips_as_fast_as_the_body_glides_and_not_when_one_foot_stands() -> None:
     gliding = Kinematics.of(standing_still(root=np.outer(np.arange(60) / 30, [0.3, 0.0, 0.0])))
     assert foot_skate.support_slip(gliding) == pytest.approx(30, rel=1e-3)
+    carrying, lying = (
+        replace(gliding, motion=replace(gliding.motion, contacts=np.full_like(gliding.motion.contacts, felt)))
+        for felt in (1.0, 0.0)
+    )
+    assert foot_skate.carried_slip(carrying) == foot_skate.support_slip(gliding)
+    assert foot_skate.carried_slip(lying) == 0.0
     stepping = standing_still()
     turns = stepping.local_rotations.astype(np.float64)
     turns[:, INDEX["left_hip"]] = rotations.axis_to_quat("x", 0.3 * np.sin(np.arange(60) / 3))
