@@ -12,6 +12,7 @@ from dataclasses import replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
@@ -20,10 +21,11 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import FPS, RISINGS, Motion
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.rotations import Array
+from motion_backend.skeleton import INDEX
 
 TAILS: Final[dict[tuple[PartKind, PartKind], float]] = {
-    (PartKind.WALK, PartKind.SIT): 0.7,
-    (PartKind.WALK, PartKind.LIE): 0.7,
+    (PartKind.WALK, PartKind.SIT): 0.95,
+    (PartKind.WALK, PartKind.LIE): 0.95,
     (PartKind.WALK, PartKind.REACH): 0.8,
     (PartKind.WALK, PartKind.WALK): 0.7,
     (PartKind.REACH, PartKind.WALK): 0.8,
@@ -32,27 +34,54 @@ TAILS: Final[dict[tuple[PartKind, PartKind], float]] = {
     (PartKind.RISE, PartKind.REACH): 0.35,
 }
 """Seconds of a part that are still done while the next kind of part begins; others end before anything begins."""
+ARRIVED, STAYS = 0.25, 0.13
+"""Who walks somewhere is so near to the place (metres) for so long (seconds) before anything else begins."""
+LEGS: Final = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("knee", "ankle")]
+IN_SWING, CHANGES = 1.0, 0.35
+"""A leg with a joint that is faster, or changes its speed by more in a frame (m/s), is in swing: nothing else begins
+then."""
 _PLACES: Final = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "reach")
 _TURNS: Final = ("hips", "feet", "palms")
 _SHARES: Final = ("reaching", "pressing")
 
 
 def frames_kept_back(part: Part, upcoming: tuple[Part, ...], made: Motion) -> int:
-    """How many of the frames made for a part are done together with the next one's; who rises stands first, and who has
-    stepped up to a thing and walks off has stepped back."""
-    later = next((one for one in upcoming if not only_stands(one)), None)
+    """How many of the frames made for a part are done together with the next one's; who rises stands first, who
+    walks is there, and who has stepped up to a thing and walks off has stepped back."""
+    later = next((one for one in upcoming if not only_stands(one) and not _leads_nowhere(one, part)), None)
     if later is None:
         return 0
     own, following = (PartKind.WALK if one.kind is PartKind.TURN else one.kind for one in (part, later))
     kept = min(round(TAILS.get((own, following), 0.0) * FPS), len(made) - 1)
     if (own, following) == (PartKind.REACH, PartKind.WALK):
-        stands = made.contacts.min(axis=1)[::-1] > 0
-        kept = min(kept, len(stands) if stands.all() else int(np.argmin(stands)))
+        kept = min(kept, _lasting(made.contacts.min(axis=1) > 0))
+    if part.goal is not None:
+        stays = round(STAYS * FPS)
+        away = np.hypot(*(made.root_positions[-kept - stays :, [0, 2]] - part.goal).T)
+        kept = min(kept, len(away) - stays - int(np.argmax(away <= max(ARRIVED, away.min()))))
+        kept -= _until_calm(made.part(max(len(made) - kept - 2, 0), len(made)))
     if part.kind is PartKind.RISE and kept > 0:
-        up = risen(Kinematics.of(made.part(max(len(made) - FPS, 0), len(made))))[::-1]
-        stood = len(up) if up.all() else int(np.argmin(up))
-        kept = min(kept, stood - round(RISEN[2] * FPS) - 1)
+        up = risen(Kinematics.of(made.part(max(len(made) - FPS, 0), len(made))))
+        kept = min(kept, _lasting(up) - round(RISEN[2] * FPS) - 1)
     return max(kept, 0)
+
+
+def _lasting(holds: NDArray[np.bool_]) -> int:
+    """For how many frames something has been so at the end."""
+    return len(holds) if holds.all() else int(np.argmin(holds[::-1]))
+
+
+def _until_calm(made: Motion) -> int:
+    """The first frames, from the third on, in which a leg swings, or sets out or arrives."""
+    gone = np.diff(Kinematics.of(made).positions[:, LEGS], axis=0) * FPS
+    changed = np.linalg.norm(np.diff(gone, axis=0), axis=-1).max(axis=1, initial=0.0)
+    calm = (np.linalg.norm(gone[1:], axis=-1).max(axis=1, initial=0.0) < IN_SWING) & (changed < CHANGES)
+    return int(np.argmax(calm)) if calm.any() else 0
+
+
+def _leads_nowhere(later: Part, part: Part) -> bool:
+    """Whether a part only leads to where the part before it has led."""
+    return later.kind is PartKind.WALK and later.goal == part.goal
 
 
 def only_stands(part: Part) -> bool:

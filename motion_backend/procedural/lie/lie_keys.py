@@ -182,7 +182,8 @@ class OverEdge:
     head_pitch_rad: float
     head_side_rad: float
     head_turn_rad: float
-    legs_rad: float
+    legs_rad: tuple[float, float]
+    """Of the leg on the side of the head end, and of the other."""
     feet_apart_share: float
     foot_pitch_rad: float
     below_share: float
@@ -191,19 +192,22 @@ class OverEdge:
     below_elbow_direction: Vector
     above_wrist_ratio: Vector
     above_elbow_direction: Vector
-    planted: bool = False
-    feet_up_m: float = 0.0
-    """How far over the floor feet are that do not stand any more, or not yet."""
+    feet_up_m: tuple[float, float]
+    """How far over the floor feet are at least; those that are not, and hang straight down, stand."""
+    foot_drawn_m: float = 0.0
+    """How much nearer to the hip feet are than they hang: knees bend for it."""
 
 
 @table
 class Rolled:
-    """On the side of the edge, knees bent and arms before the chest."""
+    """On the side of the edge, knees bent; arms are rows of `lie_pose.toml`."""
 
     name: Literal["rolled"]
     wait_s: float
     head_pitch_rad: float
     pelvis_share: float
+    below_arm: str
+    above_arm: str
 
 
 @table

@@ -35,6 +35,8 @@ SOFT = 0.01
 """How much lower the pelvis is that sits on what it would lie on (metres)."""
 PAST_HAND = 0.12
 """A hand is so far from the end of a bed at least (metres)."""
+DOWN = 1.57
+"""Legs that hang straight down (radians)."""
 CLEAR = 0.01
 """A sole is so far above the floor that it is not put down on yet, at least (metres)."""
 FACING_UP = 0.5
@@ -198,8 +200,9 @@ def _through(poses: list[Pose], waits: list[float], bearing: Bearing) -> Pose:
 
 
 def gathered(style: Lying) -> Lying:
-    """The way of lying that a body comes down in: knees bent, arms over the trunk."""
-    return Lying(bearing=style.bearing, side=style.side, legs="bent", arms=("chest", "belly"))
+    """The way of lying that a body comes down in: knees bent, on the back with arms that go to where they will lie."""
+    arms = style.arms if style.side == "back" and not style.propped else ("chest", "belly")
+    return Lying(bearing=style.bearing, side=style.side, legs="bent", arms=arms)
 
 
 def _unpressed(pose: Pose, end: Pose) -> Pose:
@@ -257,26 +260,27 @@ def _over_edge(row: OverEdge, sat: Pose, edge: Edge, hands: tuple[Array, Array])
         spine=bend(row.spine_pitch_rad, side=row.spine_side_rad * way),
         head=bend(row.head_pitch_rad, side=row.head_side_rad * way, turn=row.head_turn_rad * way),
     )
-    return _pushed(row, pose if row.planted else _hanging(row, pose, edge), edge, hands)
+    return _pushed(row, _hanging(row, pose, edge), edge, hands)
 
 
 def _hanging(row: OverEdge, sat: Pose, edge: Edge) -> Pose:
-    """Legs swung up over the edge as a whole, from where they stand in `sat`."""
-    swing = edge.turned(row.legs_rad)
-    local = sat.ankles - edge.seat.pelvis
-    middle = local.mean(axis=0)
-    ankles = sat.pelvis + rotations.rotate(swing, middle + row.feet_apart_share * (local - middle))
-    lowest = edge.skeleton.ankle_height + max(CLEAR, row.feet_up_m * edge.skeleton.scale)
-    ankles[:, 1] = np.maximum(ankles[:, 1], lowest)
-    pitch = rotations.rotvec_to_quat(np.array([row.foot_pitch_rad, 0.0, 0.0]))
-    return replace(
-        sat,
-        ankles=ankles,
-        feet=rotations.compose(rotations.compose(swing, sat.feet), pitch),
-        toes=np.zeros(2),
-        knees=rotations.rotate(swing, sat.knees),
-        planted=np.zeros(2),
-    )
+    """Each leg swung up over the edge, from where it stands in `sat`, or standing there still."""
+    ankles, feet, knees, planted = sat.ankles.copy(), sat.feet.copy(), sat.knees.copy(), np.ones(2)
+    middle, pitch = sat.ankles.mean(axis=0), rotations.rotvec_to_quat(np.array([row.foot_pitch_rad, 0.0, 0.0]))
+    for index in (0, 1):
+        rad, up = (pair[0 if index == edge.below else 1] for pair in (row.legs_rad, row.feet_up_m))
+        if up == 0.0 and rad == DOWN:
+            continue
+        swing = edge.turned(rad)
+        hangs = middle + row.feet_apart_share * (sat.ankles[index] - middle) - edge.seat.pelvis
+        hangs[1] += row.foot_drawn_m * edge.skeleton.scale
+        ankles[index] = sat.pelvis + rotations.rotate(swing, hangs)
+        lowest = edge.skeleton.ankle_height + max(CLEAR, up * edge.skeleton.scale)
+        ankles[index, 1] = max(ankles[index, 1], lowest)
+        feet[index] = rotations.compose(rotations.compose(swing, sat.feet[index]), pitch)
+        knees[index] = rotations.rotate(swing, sat.knees[index])
+        planted[index] = 0.0
+    return replace(sat, ankles=ankles, feet=feet, toes=sat.toes * planted, knees=knees, planted=planted)
 
 
 def _pushed(row: OverEdge, pose: Pose, edge: Edge, hands: tuple[Array, Array]) -> Pose:
@@ -301,8 +305,8 @@ def _bound_for(leaning: Pose, pose: Pose) -> Pose:
 
 
 def _rolled(row: Rolled, pose: Pose, edge: Edge, hands: tuple[Array, Array], keys: LiePose) -> Pose:
-    """On the side of the edge with knees bent, arms before the chest, the hand above about to push or done with it."""
-    arms = ("tucked", "before") if edge.side == "left" else ("before", "tucked")
+    """On the side of the edge with knees bent."""
+    arms = (row.below_arm, row.above_arm) if edge.side == "left" else (row.above_arm, row.below_arm)
     side = Lying(side=edge.side, legs="gathered", arms=arms)
     lain = lying(pose, edge.bed, side, edge.skeleton, keys)
     moved = row.pelvis_share * (edge.seat.pelvis - edge.bed.pelvis) * [1.0, 0.0, 1.0]

@@ -66,6 +66,8 @@ SEAT_DROP, MIN_DEPTH, MAX_DEPTH = 0.4, 0.6, 2.0
 """How far a pelvis comes down to an ordinary seat (metres at 1.70 m), and the bounds of other depths against that."""
 ANY_DEPTH, EACH_DEPTH = 0.7, 0.3
 """Shares of the time down and up that every seat takes, and that grows with its depth."""
+KNEES_TURN = 0.5
+"""How long knees take to come over the feet (seconds)."""
 KNEES_UP, LEVEL_KNEES_UP, STEEP = 0.25, 1.5, 0.6
 """How far bent knees point up, against ahead, and how much farther in level legs; legs are, little by little, that rise
 to the pelvis by less than this (sine)."""
@@ -170,7 +172,8 @@ def lower_onto(start: Pose, seat: Seat, style: Seated, felt: Holds, skeleton: Sk
     seconds = keys.lower.time_s * (1 / style.bearing.tempo) * (ANY_DEPTH + EACH_DEPTH * depth)
     times = [0.0, *(row.time_share * seconds for row in keys.pose)]
     down = interpolate(times, [start, *before, contact], FPS)
-    return replace(down, knees=knees_over_feet(down))
+    over, turned = knees_over_feet(down), smooth(np.arange(1, len(down) + 1) / (KNEES_TURN * FPS))
+    return replace(down, knees=start.knees + turned[:, None, None] * (over - start.knees))
 
 
 def _way_down(seat: Seat, style: Seated, depth: float, lower: Lower, low: bool) -> _WayDown:

@@ -51,11 +51,11 @@ class Shuffle:
 class TurningOnTheWay:
     """A body turns into its way, and to what it goes to, while it steps along: aside or backwards as it begins."""
 
-    m_per_rad: float
-    """Over so much of the way,"""
+    m_per_rad: tuple[float, float]
+    """Over so much of the way, as it begins and as it ends,"""
     min_m: float
     """no less than this,"""
-    min_m_per_rad: float
+    min_m_per_rad: tuple[float, float]
     """and over less of a short way, but no less than this."""
     still_m: float
     """It is done so long before the end, which is the slow part."""
@@ -146,18 +146,30 @@ def plan_route(
         return _joined([_shuffle(points, start_yaw, 0.0, fps), _turn(points[-1], start_yaw, start_yaw + turn, fps)])
     tangent = _tangents(points)
     tangent = tangent + _less_turning(tangent, aside, start_yaw, end_yaw)
-    first = float(rotations.wrap(tangent[0] - start_yaw))
-    last = 0.0 if end_yaw is None else float(rotations.wrap(end_yaw - tangent[-1]))
+    facing = _facing(tangent, end_yaw)
+    first = float(rotations.wrap(facing[0] - start_yaw))
+    last = 0.0 if end_yaw is None else float(rotations.wrap(end_yaw - facing[-1]))
     turns = _turns_on_the_way(first, last, length, begun_mps is not None)
     before, after = first - turns.first, last - turns.last
     pieces: list[Route] = []
     if before:
         pieces.append(_turn(points[0], start_yaw, start_yaw + before, fps))
-    pieces.append(_walk(points, tangent + (start_yaw + first - tangent[0]), turns, (speed, fps, begun_mps)))
+    about = start_yaw + first - facing[0]
+    pieces.append(_walk(points, (tangent + about, facing + about), turns, (speed, fps, begun_mps)))
     if after:
         arrived = float(pieces[-1].heading[-1])
         pieces.append(_turn(points[-1], arrived, arrived + after, fps))
     return _joined(pieces)
+
+
+def _facing(tangent: Array, end_yaw: float | None) -> Array:
+    """Where a body faces on its way but for its first and last turn: along it, and over its end, where it turns to a
+    yaw, as where that begins. (M,)."""
+    facing = tangent.copy()
+    if end_yaw is not None:
+        ends = max(len(tangent) - 1 - int(root_path_table().way.min_m / SPACING), 0)
+        facing[ends:] = tangent[ends]
+    return facing
 
 
 @dataclass(frozen=True)
@@ -183,11 +195,12 @@ def _turns_on_the_way(first: float, last: float, length: float, in_stride: bool)
     """What of the first and the last turn there is room for on a way of that length; who is under way does all."""
     rows = root_path_table()
     row, free = rows.way, max(length - rows.way.still_m, SPACING)
-    wanted = [max(row.m_per_rad * abs(turn), row.min_m) if turn else SPACING for turn in (first, last)]
+    both = tuple(zip((first, last), row.m_per_rad, row.min_m_per_rad, strict=True))
+    wanted = [max(usual * abs(turn), row.min_m) if turn else SPACING for turn, usual, _ in both]
     share = min(1.0, free / sum(wanted))
     done, over = [], []
-    for turn, metres in zip((first, last), wanted, strict=True):
-        most = metres * share / row.min_m_per_rad
+    for (turn, _, least), metres in zip(both, wanted, strict=True):
+        most = metres * share / least
         rest = abs(turn) - most
         done.append(turn if in_stride or rest < rows.turn.min_rad else float(np.sign(turn)) * most)
         over.append(metres * share)
@@ -231,10 +244,11 @@ def _tangents(points: Array) -> Array:
     return np.asarray(gaussian_filter1d(yaw, root_path_table().speed.bends_m / SPACING, mode="nearest"))
 
 
-def _walk(points: Array, tangent: Array, turns: _Turns, pace: tuple[float, int, float | None]) -> Route:
-    (speed, fps, begun), row = pace, root_path_table().speed
+def _walk(points: Array, yaws: tuple[Array, Array], turns: _Turns, pace: tuple[float, int, float | None]) -> Route:
+    """Along points (M, 2) that lead to one yaw and are gone facing another, (M,) each."""
+    (speed, fps, begun), row, (tangent, facing) = pace, root_path_table().speed, yaws
     arc = SPACING * np.arange(len(points), dtype=np.float64)
-    to_go = turns.to_go(arc)
+    to_go = turns.to_go(arc) + facing - tangent
     limit = _speed_limits(tangent, to_go, speed, row, begun)
     time = np.concatenate([[0.0], np.cumsum(2 * SPACING / (limit[1:] + limit[:-1]))])
     at = np.arange(1, int(np.ceil(time[-1] * fps)) + 1) / fps

@@ -24,7 +24,7 @@ from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.root_path import SPACING, resample
 from motion_backend.procedural.walk.walk_styles import Walk, walk_style
-from motion_backend.procedural.walk.way_junction import ThroughWay, through_way, way_from, way_to
+from motion_backend.procedural.walk.way_junction import ThroughWay, through_way, way_from
 from motion_backend.rotations import Array
 from scene_graphs.navigation.path_planner import Walkable
 
@@ -81,7 +81,7 @@ FACING_IT = 0.12
 SHORT_WAY = 0.20
 """A body that has not to turn round steps straight to a place nearer than this (metres)."""
 TURNING_ROUND = 1.2
-"""A body that is, or arrives, turned away from where it will face by more (radians) turns before the last step."""
+"""A body that is turned away from where it will face by more (radians) does not."""
 SPREAD, ROOM_TO_SPREAD = {"open": "embracing", "balance": "balance_ahead"}, 0.30
 """Arms that need so much more room beside a way than the body does (metres), and what they do where there is less."""
 NARROW = 0.2
@@ -101,12 +101,6 @@ GOES_ON = 1.0
 """So far a walk leads on after a spin, where it is twice as long (metres)."""
 HALTS = 0.6
 """How far a walk goes on that has to stop (metres)."""
-ELBOW_ROOM = 0.26
-"""Clearance beyond which there is no better place to turn on the spot (metres)."""
-TURNING_PLACES = (0.32, 0.26, 0.20, 0.14)
-"""How far ahead of a seat it is turned round before backing up to it, the roomiest (metres),"""
-ROOMIER = 0.04
-"""where that has so much more room than the seat (metres)."""
 LEAVES_BEFORE = 0.5
 """So far before its end (metres) a way is left by who goes to another place near there."""
 
@@ -127,11 +121,9 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
-    turning, made = None, len(body.frames)
+    made = len(body.frames)
     if away < SHORT_WAY and to_turn < TURNING_ROUND:
         path = np.array([body.place, goal])
-    elif not near:
-        turning = _turning_place(body, path, goal, facing)
     if style.spin and not near:
         path = _spin_on_the_way(body, path, style)
         style = replace(style, spin=0.0)
@@ -143,11 +135,7 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
         *before, path = to_and_fro(path, body.scene.walkable)
         for way in before:
             _stride(body, way, None, style)
-    if turning is not None and facing is not None:
-        _stride(body, _way_to(body, turning), facing, style)
-        body.enter(PhaseKind.BACK_UP)
-        path = np.array([body.place, goal])
-    _stride(body, path, facing, style, onward if not near and turning is None else None)
+    _stride(body, path, facing, style, None if near else onward)
     if style.speed > QUICK and asks_for_haste(action):
         _note_no_room(body, made, style.speed)
 
@@ -192,8 +180,6 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
     if stride is None and not style.aside:
         path = way_from(path, body.yaw, lambda points: _is_free(points, body.scene.walkable))
     way = _through(body, path, onward) if onward is not None and not style.spin else None
-    if way is None and facing is not None and not style.aside:
-        path = way_to(path, facing, lambda points: _is_free(points, body.scene.walkable))
     points, cut = (path, None) if way is None else (way.points, way.cut_m)
     end = facing if way is None else None
     walkable = body.scene.walkable
@@ -233,20 +219,6 @@ def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
     split = len(points) // 2 + int(np.argmax(body.scene.walkable.field.at(half)))
     _stride(body, points[: split + 1], None, style)
     return np.concatenate([[body.place], points[split:]])
-
-
-def _turning_place(body: Body, path: Array, goal: Point, facing: float | None) -> Point | None:
-    """Where to turn round before backing up to a seat, away from it; None where no turning round is needed."""
-    if facing is None or len(path) < 2:
-        return None
-    step = path[-1] - path[-2]
-    if float(np.abs(rotations.wrap(np.arctan2(step[0], step[1]) - facing))) < TURNING_ROUND:
-        return None
-    ahead = np.array([np.sin(facing), np.cos(facing)])
-    places = [(float(goal[0] + d * ahead[0]), float(goal[1] + d * ahead[1])) for d in TURNING_PLACES]
-    room = [min(body.scene.walkable.clearance(place), ELBOW_ROOM) for place in places]
-    best = int(np.argmax(room))
-    return places[best] if room[best] > body.scene.walkable.clearance(goal) + ROOMIER else None
 
 
 def stay(body: Body, part: Part) -> None:

@@ -54,7 +54,7 @@ class JunctionTable:
     back_m: float
     """Over which the way that leads on is joined."""
     round_from_rad: float
-    """Who sets out, or arrives, turned by more than this comes round in an arc."""
+    """Who sets out turned by more than this comes round in an arc."""
 
 
 def junction_table() -> JunctionTable:
@@ -154,8 +154,3 @@ def way_from(path: Array, yaw: float, fits: Fits) -> Array:
         if curved is not None and len(points) * SPACING > 2 * radius and fits(curved):
             return curved
     return path
-
-
-def way_to(path: Array, facing: float, fits: Fits) -> Array:
-    """A way (N, 2) that comes round in an arc to what is faced at its end; as it was without room."""
-    return way_from(path[::-1], facing + np.pi, fits)[::-1]
