@@ -13,27 +13,35 @@ from scene_graphs.layout import Layout
 FOUND = 0.1
 """Furniture that so many rooms of a type have is found where it is asked for."""
 USUAL = 0.3
-"""A room type of which this share has a piece is a place for it; a body need not go elsewhere."""
+"""A room type of which this share has a piece is a place for it; a body need not go elsewhere,"""
+ENOUGH = 5
+"""nor where so many rooms of the type have it with all that is used there besides: one of them is found."""
+Wanted = tuple[frozenset[str], ...]
+"""Categories of furniture of which a room has one each."""
 
 
 def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) -> LongScript:
     """The script with a room at every keyframe, one of `types`; what has a room keeps it.
 
-    The body stays where it is as long as that kind of room usually has what is used next. A keyframe on the floor plays
-    where the next piece of furniture is.
+    The body stays where it is as long as that kind of room usually has what is used next, or some of them have all that
+    is used there. A keyframe on the floor plays where the next piece of furniture is.
     """
     if all(keyframe.room for keyframe in script.keyframes):
         return script
     room: str | None = next((keyframe.room for keyframe in script.keyframes if keyframe.room), None)
     rooms: list[str | None] = []
+    used: dict[str | None, Wanted] = {}
     for keyframe, table in zip(script.keyframes, tables_of(script.keyframes), strict=True):
+        wanted = () if keyframe.on_floor else _wanted(keyframe.piece[0], table)
         if keyframe.room or keyframe.on_floor:
             rooms.append(keyframe.room)
         else:
             shares = shares_of(keyframe.piece[0], layouts, types, table)
             stays = room is not None and (shares.get(room, 0.0) >= USUAL or not any(shares.values()))
+            stays = stays or (room in types and _having(layouts, room, (*used.get(room, ()), *wanted)) >= ENOUGH)
             rooms.append(room if stays else max(types, key=lambda name: shares[name]))
         room = rooms[-1] or room
+        used[rooms[-1]] = (*used.get(rooms[-1], ()), *wanted)
     known = [name for name in rooms if name] or [types[0]]
     for index in reversed(range(len(rooms))):
         following = rooms[index + 1] if index + 1 < len(rooms) else known[-1]
@@ -53,10 +61,16 @@ def shares_of(
     word: str, layouts: Sequence[Layout], types: Sequence[str], beside: str | None = None
 ) -> dict[str, float]:
     """For each room type, the share of its rooms that have such a piece, and one of those that it stands `beside`."""
-    wanted = [categories_of(canonical(one)) for one in (word, beside) if one is not None]
-    shares = {}
-    for name in types:
-        own = [layout for layout in layouts if layout.room_type == name]
-        having = sum(all(any(one.category in kinds for one in layout.objects) for kinds in wanted) for layout in own)
-        shares[name] = having / max(len(own), 1)
-    return shares
+    wanted = _wanted(word, beside)
+    counts = Counter(layout.room_type for layout in layouts)
+    return {name: _having(layouts, name, wanted) / max(counts[name], 1) for name in types}
+
+
+def _wanted(word: str, beside: str | None) -> Wanted:
+    return tuple(categories_of(canonical(one)) for one in (word, beside) if one is not None)
+
+
+def _having(layouts: Sequence[Layout], room: str | None, wanted: Wanted) -> int:
+    """How many rooms of a type have all that is wanted."""
+    own = ({one.category for one in layout.objects} for layout in layouts if layout.room_type == room)
+    return sum(all(kinds & there for kinds in wanted) for there in own)

@@ -236,3 +236,31 @@ def test_hands_at_another_piece_than_is_named_are_told_and_a_bin_is_no_picture()
         assert given not in ("picture", "trash can")
         assert found.instead(0) == (f"at the {given} in place of the {told}" if told else "")
     assert not furnish(DAY, index()).instead(1), "a wardrobe is asked for and there"
+
+
+def roomless(*rows: tuple[str, str, str]) -> LongScript:
+    """Keyframes as (skill, caption, furniture), in no certain room."""
+    keyframes = tuple(
+        PlannedKeyframe(skill=Skill(skill), caption=caption, furniture=piece) for skill, caption, piece in rows
+    )
+    return LongScript(theme="t", beats=(Beat(text="t"),), short_scripts=(), keyframes=keyframes)
+
+
+@pytest.mark.parametrize(("then", "rooms"), [("floor lamp", 1), ("desk", 1), ("stove", 2)])
+def test_nobody_leaves_a_room_for_what_some_rooms_of_its_kind_have(then: str, rooms: int) -> None:
+    stage = furnish(roomless(("liedown", "lying still", "bed"), ("touch", "touch medium height", then)), index())
+    assert len({place.room for place in stage.places}) == rooms
+    assert not any(match.substitutions for match in stage.matches)
+
+
+def test_a_chair_a_step_from_its_table_is_drawn_up_for_a_meal_and_for_nothing_else_and_that_is_said() -> None:
+    chair = replace(UNDER, id="away", position=(2.0, 0.0, 3.4))
+    room = replace(DINING, objects=(TABLE, chair))
+    for caption, drawn in (("eating at the table, right hand to the mouth", True), ("arms loosely, legs open", False)):
+        stage = furnish(roomless(("sitdown", caption, "dining chair")), index(), given=[room])
+        (match,) = stage.matches
+        assert [move.object_id for move in match.drawn_up] == ["away"] * drawn
+        assert (stage.home.object("0/away").position != chair.position) == drawn
+        assert any("drawn up to its table" in line for line in stage.explain()) == drawn
+        again = serialization.furnished_from_dict(json.loads(json.dumps(serialization.furnished_to_dict(stage))))
+        assert again.matches == stage.matches
