@@ -407,7 +407,8 @@ class KeyframeWriter:
             and same
             and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
         ):
-            self._take_part(index, part, read.room or part.script.room)
+            # Where one is, if such a room has it too: that is decided when the home is found.
+            self._take_part(index, part, read.room or (None if self._here else part.script.room))
             self._lay(read, skill)
             return True
         room, piece = self._piece(read, deed, skill)
@@ -463,8 +464,7 @@ class KeyframeWriter:
     def _piece(self, read: ReadBeat, deed: Deed, skill: Skill) -> tuple[str | None, str]:
         """Room and furniture where it is done: as the beat says, else as is usual, of what there will be."""
         need, usual = NEEDS[skill], deed_table().usual
-        here = next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
-        asked = dict.fromkeys((read.room, room_of(read.clause), here or self._ahead))
+        asked = dict.fromkeys((read.room, room_of(read.clause), self._here or self._ahead))
         rooms = [room for room in asked if room is not None and room in self._rooms]
         near = [] if deed.named else [one.furniture for one in self._near()]
         last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
@@ -484,6 +484,11 @@ class KeyframeWriter:
         general = [piece for those in usual.values() for piece in those[need]]
         options = [*last, *deed.pieces, *(() if deed.pieces else usual["living_room"][need]), *general]
         return None, next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
+
+    @property
+    def _here(self) -> str | None:
+        """The room that one was in last, where that is known."""
+        return next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
 
     def _near(self) -> list[PlannedKeyframe]:
         """What was last done at furniture, in the room that one is in."""
