@@ -15,6 +15,7 @@ import numpy as np
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed, unshown
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
+from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
@@ -148,6 +149,7 @@ def _besides(
     if index in writer.moody:
         seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
         known = (read.sure or read.beat.kind == "feeling") and seen and not _does_more(read)
+        known = known and not is_gainsaid(read.clause, [one for one in keyframes if one.mood is read.beat.emotion])
         return details_of(read.clause) if known else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]

@@ -12,7 +12,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import grammar, is_known_word, lemma_of
-from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person
+from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
@@ -134,11 +134,14 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     hero = hero_of(clauses)
     pronoun = called(clauses, hero)
     told = (clause for clause in clauses if clause.verb or clause.text.lower() != hero.lower())
-    return tuple(_moods([_read(clause, hero, pronoun) for clause in told]))
+    return tuple(
+        _moods([_read(clause, hero, pronoun, tells_of_others(clause, clauses, hero, pronoun)) for clause in told])
+    )
 
 
-def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
-    who = "" if clause.aside or is_hero(clause.doer, hero, pronoun) else clause.doer
+def _read(clause: Clause, hero: str, pronoun: str, of_others: bool = False) -> ReadBeat:
+    ours = not of_others and is_hero(clause.doer, hero, pronoun)
+    who = "" if clause.aside or ours else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
     if clause.aside and clause.subject and clause.subject.lower() not in text.lower():  # "the door slam"
