@@ -48,16 +48,13 @@ def serve_beats(
     reader = _reader(read, library, request)
     read = read if planned else tuple(map(reader.heard, read))
     parts = {} if request.method == "direct" else PartFinder(library, reader, request.rooms).all_of(read)
-    writer = KeyframeWriter(request.seed, request.furniture, reader, parts.get)
     if planned is None or any(one.keyframes is None for one in planned.beats):
         record.planners.append(RULES)
-    writer.avoid(read)
-    for index in range(len(read)):
-        served = planned.beats[index] if planned else None
-        if served is not None and served.keyframes is not None:
-            writer.take(index, served.keyframes, served.beat.why, _named_part(served, library))
-        else:
-            writer.write(index, read)
+    for spares in (True, False):  # of what is asked for something is seen, even if it only stands for it
+        writer = KeyframeWriter(request.seed, request.furniture, reader, parts.get, spares)
+        _write(writer, read, planned, library)
+        if writer.keyframes:
+            break
     if not writer.keyframes:
         writer.appear(read)
     if not writer.keyframes:
@@ -78,6 +75,19 @@ def serve_beats(
         encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
+
+
+def _write(
+    writer: KeyframeWriter, read: Sequence[ReadBeat], planned: PlannedTheme | None, library: ScriptLibrary
+) -> None:
+    """Keyframes for all beats: the model's, where it planned them."""
+    writer.avoid(read)
+    for index in range(len(read)):
+        served = planned.beats[index] if planned else None
+        if served is not None and served.keyframes is not None:
+            writer.take(index, served.keyframes, served.beat.why, _named_part(served, library))
+        else:
+            writer.write(index, read)
 
 
 def _reader(read: Sequence[ReadBeat], library: ScriptLibrary, request: Request) -> DeedReader:

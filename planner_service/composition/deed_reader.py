@@ -245,6 +245,13 @@ class DeedReader:
         at_rest = max(likely.of(Skill.SITDOWN, deed.row.seated), likely.of(Skill.LIEDOWN, deed.row.lying))
         return min(max(likely.of(deed.skill, shown_by(deed, mood)), at_rest), likely.shown) < least
 
+    def likelihood(self, clause: Clause, keyframe: Keyframe) -> float:
+        """How likely a keyframe's caption is taken for what a clause tells, wherever it is; 1 without a classifier."""
+        likely = self.likely(clause)
+        if likely is None:
+            return 1.0
+        return min(likely.captions.get((keyframe.skill, keyframe.caption), 0.0), likely.shown)
+
     def may_be_at(self, clause: Clause, skill: Skill, word: str, known: bool) -> bool:
         """Whether it may as well be done at a piece of furniture as elsewhere; `known` is what the table says."""
         likely = self.likely(clause)

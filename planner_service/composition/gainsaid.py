@@ -50,7 +50,6 @@ def _is_another_place(clause: Clause, keyframe: Keyframe) -> bool:
         inside = [piece for place in _INSIDE.findall(clause.text) for piece in pieces_in(place)]
         if any(not affords(piece, "lie") and not affords(piece, "sit") for piece in inside):
             return True
-    mounted = clause.verb in _MOUNTS and [
-        piece for place in _ON_IT.findall(clause.text) for piece in pieces_in(place) if affords(piece, "sit")
-    ]
-    return bool(mounted) and not (lain and all(affords(piece, "lie") for piece in mounted))
+    seats = [piece for place in _ON_IT.findall(clause.text) for piece in pieces_in(place) if affords(piece, "sit")]
+    lain = lain and all(affords(piece, "lie") for piece in seats)
+    return clause.verb in _MOUNTS and bool(seats) and not lain
