@@ -27,9 +27,8 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
         return False
     seated = before.resting is None and done[-1].skill in _POSTURES
     rises = before.resting is not None and (done[-1].skill not in _POSTURES or any(k.skill in RISINGS for k in new))
-    goes = len(new) > len(done) or done[-1].skill is Skill.LOCO
-    if not (seated or rises or goes):
-        return False  # a hand, or other limbs, where one is
+    if not (seated or rises or len(new) > len(done)):
+        return False  # a hand, or steps, where one is
     least = SEATED_FOR_IT if rises or (seated and done[-1].skill is Skill.SITDOWN) else GONE_FOR_IT
     if max(reader.likelihood(read.clause, one) for one in done) < least:
         return True
