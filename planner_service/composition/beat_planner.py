@@ -15,6 +15,7 @@ import numpy as np
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed, unshown
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
+from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
@@ -47,16 +48,13 @@ def serve_beats(
     reader = _reader(read, library, request)
     read = read if planned else tuple(map(reader.heard, read))
     parts = {} if request.method == "direct" else PartFinder(library, reader, request.rooms).all_of(read)
-    writer = KeyframeWriter(request.seed, request.furniture, reader, parts.get)
     if planned is None or any(one.keyframes is None for one in planned.beats):
         record.planners.append(RULES)
-    writer.avoid(read)
-    for index in range(len(read)):
-        served = planned.beats[index] if planned else None
-        if served is not None and served.keyframes is not None:
-            writer.take(index, served.keyframes, served.beat.why, _named_part(served, library))
-        else:
-            writer.write(index, read)
+    for spares in (True, False):  # of what is asked for something is seen, even if it only stands for it
+        writer = KeyframeWriter(request.seed, request.furniture, reader, parts.get, spares)
+        _write(writer, read, planned, library)
+        if writer.keyframes:
+            break
     if not writer.keyframes:
         writer.appear(read)
     if not writer.keyframes:
@@ -77,6 +75,19 @@ def serve_beats(
         encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
+
+
+def _write(
+    writer: KeyframeWriter, read: Sequence[ReadBeat], planned: PlannedTheme | None, library: ScriptLibrary
+) -> None:
+    """Keyframes for all beats: the model's, where it planned them."""
+    writer.avoid(read)
+    for index in range(len(read)):
+        served = planned.beats[index] if planned else None
+        if served is not None and served.keyframes is not None:
+            writer.take(index, served.keyframes, served.beat.why, _named_part(served, library))
+        else:
+            writer.write(index, read)
 
 
 def _reader(read: Sequence[ReadBeat], library: ScriptLibrary, request: Request) -> DeedReader:
@@ -148,6 +159,7 @@ def _besides(
     if index in writer.moody:
         seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
         known = (read.sure or read.beat.kind == "feeling") and seen and not _does_more(read)
+        known = known and not is_gainsaid(read.clause, [one for one in keyframes if one.mood is read.beat.emotion])
         return details_of(read.clause) if known else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]

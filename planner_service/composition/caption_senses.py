@@ -10,6 +10,7 @@ from typing import Final
 from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, object_of, pieces_in, readings, says
 from planner_service.scripts.script import Keyframe
+from planner_service.themes.lexicon import grammar
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
@@ -45,11 +46,23 @@ class Contradiction:
 
 
 @table
+class Only:
+    """Deeds that are seen in hands or limbs: no captions show them but these, whatever else is likely."""
+
+    captions: tuple[str, ...]
+    """Parts of captions; none: nothing shows them."""
+    says: tuple[str, ...]
+    unless: tuple[str, ...] = ()
+    """Where the words mean something else: "throws the window open"."""
+
+
+@table
 class SenseTable:
     """data/caption_senses.toml."""
 
     sense: tuple[Sense, ...]
     contradiction: tuple[Contradiction, ...]
+    only: tuple[Only, ...]
 
 
 @cache
@@ -81,6 +94,16 @@ def contradicted(clause: Clause) -> tuple[str, ...]:
     told = tuple(readings(clause))
     fitting = (one for one in _table().contradiction if any(says(one.says, lemmas) for lemmas in told))
     return tuple(part for one in fitting for part in one.captions)
+
+
+def only_in(clause: Clause) -> tuple[str, ...] | None:
+    """Parts of the only captions that show what a clause tells from its verb on; None where others may."""
+    plain = tuple(lemma for lemma in clause.lemmas if lemma not in grammar().adverbs)  # "jumps up", "softly sings"
+    rows = [
+        one for one in _table().only
+        if any(says(one.says, lemmas) and not says(one.unless, lemmas) for lemmas in (clause.lemmas, plain))
+    ]  # fmt: skip
+    return tuple(part for one in rows for part in one.captions) if rows else None
 
 
 def _is_touched(noun: str) -> bool:

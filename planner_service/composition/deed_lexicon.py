@@ -475,12 +475,16 @@ def pieces_in(text: str) -> list[str]:
 def pieces_told(text: str) -> list[tuple[str, str]]:
     """The same, each after the text's own words for it: "bin" for a trash can."""
     words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
-    others = deed_table().not_furniture.split()
+    others = {*deed_table().not_furniture.split()}
     found: list[tuple[str, str]] = []
     at = 0
     while at < len(words):
         size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
-        if size and not (size == 1 and words[at] in others) and not (at == 0 and _is_a_deed(words)):
+        if (
+            size
+            and not (size == 1 and {words[at], lemma_of(words[at])} & others)
+            and not (at == 0 and _is_a_deed(words))
+        ):
             name = " ".join(words[at : at + size])
             piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
             found.append((name, deed_table().stands_on.get(piece, piece)))

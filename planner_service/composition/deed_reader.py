@@ -17,6 +17,7 @@ from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
 from planner_service.composition.caption_senses import contradicted, is_shown, shows
 from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, is_another, pieces_in
+from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of
 from planner_service.scripts.acted_beats import RESTS
 from planner_service.scripts.captions import captions
@@ -95,6 +96,8 @@ _THINGS: Final = re.compile(
 )
 """What begins so is done by a thing, or by nobody: "the latch clicks"."""
 
+_NOBODY: Final = frozenset(("no", "nobody", "nothing", "none", "neither", "few", "hardly"))
+"""What is done by these is not done."""
 _WHEN: Final = re.compile(
     r"(?<=\w) (?:(?:just|right|soon|shortly|long) )?(?:after|before|during|since) (?:an?|the|his|their|my) .+$"
 )
@@ -204,6 +207,8 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
+            if one.beat.who.split(" ")[0].lower() in _NOBODY:
+                return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
@@ -217,6 +222,8 @@ class DeedReader:
 
     def is_shown(self, clause: Clause, deed: Deed, keyframes: Sequence[Keyframe], placed: bool = False) -> bool:
         """Whether some keyframe shows a clause's deed, or they only stand for it; `placed` where the place is known."""
+        if is_gainsaid(clause, keyframes):
+            return False
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
         if likely is None or not keyframes or deed.row.stands:
             return by_table
@@ -237,6 +244,13 @@ class DeedReader:
             return False
         at_rest = max(likely.of(Skill.SITDOWN, deed.row.seated), likely.of(Skill.LIEDOWN, deed.row.lying))
         return min(max(likely.of(deed.skill, shown_by(deed, mood)), at_rest), likely.shown) < least
+
+    def likelihood(self, clause: Clause, keyframe: Keyframe) -> float:
+        """How likely a keyframe's caption is taken for what a clause tells, wherever it is; 1 without a classifier."""
+        likely = self.likely(clause)
+        if likely is None:
+            return 1.0
+        return min(likely.captions.get((keyframe.skill, keyframe.caption), 0.0), likely.shown)
 
     def may_be_at(self, clause: Clause, skill: Skill, word: str, known: bool) -> bool:
         """Whether it may as well be done at a piece of furniture as elsewhere; `known` is what the table says."""
@@ -285,6 +299,8 @@ def _without(deed: Deed | None, never: Sequence[str]) -> Deed | None:
         return deed
     own = (deed.row.captions, deed.row.seated, deed.row.lying)
     kept = [tuple(one for one in some if not any(part in one for part in never)) for some in own]
+    if deed.row.captions and not kept[0] and deed.skill is Skill.TOUCH:
+        kept[0] = TOUCHES  # a hand that is laid there shows no opposite: "turns the lamp off"
     if deed.row.captions and not kept[0]:
         return None
     return replace(deed, row=replace(deed.row, captions=kept[0], seated=kept[1], lying=kept[2]))

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import RISINGS, Emotion, Skill
+from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.caption_senses import shows
 from planner_service.composition.deed_lexicon import (
     Deed,
@@ -27,10 +28,12 @@ from planner_service.composition.deed_lexicon import (
     typical_of,
     where,
 )
+from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
-from planner_service.composition.whereabouts import Whereabouts, is_held, is_worn
+from planner_service.composition.stand_in import is_too_much
+from planner_service.composition.whereabouts import is_held, is_worn
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
@@ -38,7 +41,6 @@ from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import lemma_of
-from planner_service.themes.opening_words import opening_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -96,7 +98,9 @@ class KeyframeWriter:
     reader: DeedReader = field(default_factory=DeedReader)
     part_of: Callable[[int], Part | None] = lambda _index: None
     """The part of a short script that may be taken for a beat, by the beat's place."""
-    keyframes: list[PlannedKeyframe] = field(default_factory=list)
+    spares: bool = True
+    """Whether what only stands for a beat is left out where it would be worse than nothing."""
+    body: BodyTrack = field(default_factory=BodyTrack)
     why: dict[int, str] = field(default_factory=dict)
     """Beats that are not acted, with the reason."""
     deeds: dict[int, Deed] = field(default_factory=dict)
@@ -107,8 +111,6 @@ class KeyframeWriter:
     """Beats that a mood alone shows, in whatever is done in it."""
     parts: list[tuple[int, Part]] = field(default_factory=list)
     """Beats that are served by a part of a script."""
-    _whereabouts: Whereabouts = field(default_factory=Whereabouts)
-    _resting: PlannedKeyframe | None = None
     _avoided: set[Skill] = field(default_factory=set)
     _about: str = ""
     """The words that named furniture last."""
@@ -120,8 +122,16 @@ class KeyframeWriter:
     """Whether getting up is done next."""
     _ahead: str | None = None
     """The room that is spoken of next."""
-    _plain: bool = False
-    """Whether the posture shows nothing yet but that one rests."""
+
+    @property
+    def keyframes(self) -> list[PlannedKeyframe]:
+        """All that are written."""
+        return self.body.keyframes
+
+    @property
+    def places(self) -> DeedPlaces:
+        """Where deeds may be done."""
+        return DeedPlaces(self.home, self.reader)
 
     def write(self, index: int, beats: Sequence[ReadBeat]) -> None:
         """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
@@ -138,7 +148,7 @@ class KeyframeWriter:
         elif deed is not None:
             self.deeds[index] = deed
             self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
-            self._do(index, read, deed, self._rises_later(index, beats))
+            self._try(index, read, deed, self._rises_later(index, beats))
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
         else:
@@ -167,8 +177,8 @@ class KeyframeWriter:
             row = {**keyframe.model_dump(), "beat": index, "short_script": number}
             self.keyframes.append(PlannedKeyframe.model_validate(row))
         last = self.keyframes[-1]
-        self._resting = last if last.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
-        self._plain = False
+        self.body.resting = last if last.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
+        self.body.plain = False
 
     def appear(self, beats: Sequence[ReadBeat]) -> None:
         """Somebody of whom nothing else can be acted is seen at what a verbless beat names, else in their mood."""
@@ -178,12 +188,14 @@ class KeyframeWriter:
             for piece in () if one.clause.verb else where(one.clause.text):
                 rests = affords(piece, "lie") or not affords(piece, "touch")
                 skill, mood = Skill.SITDOWN if rests else Skill.TOUCH, one.beat.emotion
-                if affords(piece, NEEDS[skill]) and skill not in self._avoided and self._has(piece):
+                if affords(piece, NEEDS[skill]) and skill not in self._avoided and self.places.has(piece):
                     caption = self._one_of(captions_of(skill, mood), mood, index, skill)
-                    self._put(index, skill, mood, caption, piece, one.room)
+                    self.body.put(index, skill, mood, caption, piece, one.room)
                     return
         mood = beats[-1].beat.emotion
-        self._put(None, Skill.LOCO, mood, "stand still" if mood is Emotion.NEUTRAL else walk_of(mood), "floor", None)
+        self.body.put(
+            None, Skill.LOCO, mood, "stand still" if mood is Emotion.NEUTRAL else walk_of(mood), "floor", None
+        )
 
     def avoid(self, beats: Sequence[ReadBeat]) -> None:
         """Neither sit nor lie for other deeds where the theme says that this is not done."""
@@ -198,6 +210,16 @@ class KeyframeWriter:
         later, deed = next(((one, deed) for one, deed in deeds if deed is not None), (None, None))
         return later is not None and deed is not None and (deed.skill in RISINGS or sits_up(later, deed))
 
+    def _try(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool) -> None:
+        """Do it, or leave it out where what would be done only stands for it and is too much for that."""
+        before, parts = self.body.copy(), len(self.parts)
+        self._do(index, read, deed, rises_later)
+        if self.spares and is_too_much(read, deed, before, self.body, self.reader):
+            self.body, self.why[index] = before, UNSHOWN
+            self.linked.discard(index)
+            self.deeds.pop(index, None)
+            del self.parts[parts:]
+
     def _do(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool = False) -> None:
         self._rises = rises_later
         deed = self._on_feet(read, deed)
@@ -205,36 +227,37 @@ class KeyframeWriter:
         self._clause = read.clause
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
-        if self._resting is not None and only_stands_for(self._resting, read, deed, self.reader):
-            self._show(index)  # nobody gets up for what would show no more
+        if self.body.resting is not None and only_stands_for(self.body.resting, read, deed, self.reader):
+            self.body.show(index)  # nobody gets up for what would show no more
             return
         if deed.skill is Skill.TOUCH and self._is_on_body(index, read):
             return
+        resting = self.body.resting
         match deed.skill:
             case Skill.STANDUP | Skill.GETUP if not self.keyframes:
                 self._begin(index, deed, mood)
-                if not rises_later and self._resting is not None:
+                if not rises_later and self.body.resting is not None:
                     self._rise(index, deed, mood)
             case Skill.STANDUP | Skill.GETUP:
                 self._rise(index, deed, mood)
             case Skill.LOCO if self._goes_on(read, deed):
-                self._show(index)
-            case Skill.LOCO if deed.row.seated and self._resting is not None and self._resting.skill is Skill.SITDOWN:
+                self.body.show(index)
+            case Skill.LOCO if deed.row.seated and resting is not None and resting.skill is Skill.SITDOWN:
                 self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
-            case Skill.LOCO if deed.row.seated and lies(self._resting) and not deed.named:
-                self._show(index)  # "lies there and stares at the wall"
+            case Skill.LOCO if deed.row.seated and lies(self.body.resting) and not deed.named:
+                self.body.show(index)  # "lies there and stares at the wall"
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:
                 for piece in (deed, *_further(read.clause, deed)):
                     if self._add(index, read, piece, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
-                        self._resting = None
-            case Skill.LIEDOWN if not deed.named and (seated := dozing(self._resting, read, self.reader)):
+                        self.body.resting = None
+            case Skill.LIEDOWN if not deed.named and (seated := dozing(self.body.resting, read, self.reader)):
                 self._rest(index, read, replace(deed, pieces=()), mood, Skill.SITDOWN, seated)
-            case Skill.SITDOWN if self._resting is not None and lies(self._resting) and sits_up(read, deed):
-                deed = replace(deed, pieces=(self._resting.furniture,))
+            case Skill.SITDOWN if self.body.resting is not None and lies(self.body.resting) and sits_up(read, deed):
+                deed = replace(deed, pieces=(self.body.resting.furniture,))
                 self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.captions)
-            case Skill.SITDOWN if lies(self._resting) and deed.row.lying and not deed.named:
+            case Skill.SITDOWN if lies(self.body.resting) and deed.row.lying and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
@@ -243,7 +266,7 @@ class KeyframeWriter:
     def _is_on_body(self, index: int, read: ReadBeat) -> bool:
         """Whether what hands would do it to is held or worn already: nobody walks to it, and it is not seen."""
         holds = is_held(read.clause) or (
-            read.clause.verb in ("hold", "clutch") and self._whereabouts.holds(read.clause)
+            read.clause.verb in ("hold", "clutch") and self.body.whereabouts.holds(read.clause)
         )
         worn = is_worn(read.clause) and not pieces_in(read.clause.text)
         if not (holds or worn):
@@ -257,7 +280,7 @@ class KeyframeWriter:
         at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
         at = () if _BY_A_WALL.search(read.text) else at
         stands, last = bool(_ON_FEET.search(read.text)), self._clause
-        goes_on = self._resting is None and last is not None and last.sentence == read.clause.sentence
+        goes_on = self.body.resting is None and last is not None and last.sentence == read.clause.sentence
         if deed.row.rests and stands and at:
             return Deed(_TAKEN, Skill.TOUCH, at, True)
         if deed.row.rests and (stands or deed.skill in self._avoided):
@@ -272,14 +295,14 @@ class KeyframeWriter:
         stands_in = bool(deed.row.captions) and not any(
             shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
         )
-        rests = self._resting is not None and not deed.named and not deed.row.seated
+        rests = self.body.resting is not None and not deed.named and not deed.row.seated
         return rests and (stands_in or (is_beside(read) and deed.row.captions == _STANDING.captions))
 
     def _rest(
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
     ) -> None:
         """Sit or lie: where one rests already if that does, with the caption of what is done there."""
-        resting = self._resting
+        resting = self.body.resting
         here = resting is not None and is_there(resting, deed, skill)
         shown = captions or captions_of(skill, mood)
         if here:  # where one sits already there need be no table
@@ -289,14 +312,14 @@ class KeyframeWriter:
             stands_in = (deed.row.stands or is_beside(read)) and not any(
                 shows(skill, one, read.clause) for one in shown
             )
-            told = self._plain and mood.value != resting.emotion and resting.mood in EXPRESSED
-            if (self._plain and not told) or not generic or stands_in or resting.caption in captions:
-                if self._plain and generic:
-                    self.keyframes[-1] = self._resting = resting.model_copy(
+            told = self.body.plain and mood.value != resting.emotion and resting.mood in EXPRESSED
+            if (self.body.plain and not told) or not generic or stands_in or resting.caption in captions:
+                if self.body.plain and generic:
+                    self.keyframes[-1] = self.body.resting = resting.model_copy(
                         update={"caption": self._one_of(shown, mood, index, skill), "emotion": mood.value}
                     )
-                    self._plain = False
-                self._show(index)
+                    self.body.plain = False
+                self.body.show(index)
                 return
         if resting is not None and here:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
@@ -304,36 +327,38 @@ class KeyframeWriter:
         if self._add(index, read, deed, mood, skill, shown):
             if begins and self._rises:  # who "cannot sleep. He gets up" lies there when the story begins
                 self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
-            self._resting, self._plain = self.keyframes[-1], not (deed.row.rests or captions)
-            tables = [table for table, seats in deed_table().seats_at.items() if seats[0] == self._resting.furniture]
+            self.body.resting, self.body.plain = self.keyframes[-1], not (deed.row.rests or captions)
+            tables = [
+                table for table, seats in deed_table().seats_at.items() if seats[0] == self.body.resting.furniture
+            ]
             if tables and skill is Skill.SITDOWN:  # what is written there lies there
-                self._whereabouts.brought(read.clause, (self._resting.room, tables[0]))
+                self.body.whereabouts.brought(read.clause, (self.body.resting.room, tables[0]))
 
     def _begin(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Lie or sit: who gets up has done so before."""
         skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
         need, already = NEEDS[skill], not self.keyframes
-        piece = next((one for one in (*deed.pieces, usually, "bed") if affords(one, need) and self._has(one)), "")
+        piece = next((one for one in (*deed.pieces, usually, "bed") if affords(one, need) and self.places.has(one)), "")
         if not piece:
             self.why[index] = "there is nothing to get up from"
             return
-        self._put(index, skill, mood, self._one_of(captions_of(skill, mood), mood, index, skill), piece, None)
-        self.keyframes[-1] = self._resting = self.keyframes[-1].model_copy(update={"already": already})
+        self.body.put(index, skill, mood, self._one_of(captions_of(skill, mood), mood, index, skill), piece, None)
+        self.keyframes[-1] = self.body.resting = self.keyframes[-1].model_copy(update={"already": already})
 
     def _rise(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Get up."""
         last = self.keyframes[-1]
-        if self._resting is None and last.skill in RISINGS:
+        if self.body.resting is None and last.skill in RISINGS:
             ways = self.reader.likeliest(self._clause, last.skill, captions()[last.skill.value]) if self._clause else ()
             if ways and last.caption not in ways:  # who "wakes up and gets up slowly"
                 self.keyframes[-1] = last.model_copy(update={"caption": ways[0]})
-            self._show(index)
+            self.body.show(index)
             return
-        if self._resting is None:
+        if self.body.resting is None:
             self._begin(index, deed, mood)
-        if self._resting is None:
+        if self.body.resting is None:
             return
-        resting = self._resting
+        resting = self.body.resting
         skill = Skill.GETUP if resting.skill is Skill.LIEDOWN else Skill.STANDUP
         pace = {"hurried": "quickly", "angry": "quickly", "tired": "slowly", "sad": "slowly", "drunk": "slowly"}.get(
             mood.value, ""
@@ -341,24 +366,24 @@ class KeyframeWriter:
         ways = self.reader.likeliest(self._clause, skill, captions()[skill.value]) if self._clause else ()
         caption = usual(skill, mood, pace)
         caption = caption if not ways or caption in ways else ways[0]
-        self._put(index, skill, mood, caption, resting.furniture, resting.room)
-        self._resting = None
+        self.body.put(index, skill, mood, caption, resting.furniture, resting.room)
+        self.body.resting = None
 
     def _walk(self, index: int, read: ReadBeat, deed: Deed, mood: Emotion) -> None:
         captions = deed.row.captions or captions_of(Skill.LOCO, mood)
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
-        piece = next((one for one in deed.pieces if self._has(one)), "floor")
+        piece = next((one for one in deed.pieces if self.places.has(one)), "floor")
         if last is not None and last.skill is Skill.LOCO and (last.caption, last.furniture) == (caption, piece):
             others = [one for one in captions if one != caption]
             if not others:
-                self._show(index)
+                self.body.show(index)
                 return
             caption = others[0]
-        self._put(index, Skill.LOCO, mood, caption, piece, read.room)
-        self._resting = None
+        self.body.put(index, Skill.LOCO, mood, caption, piece, read.room)
+        self.body.resting = None
         if deed.named and piece != "floor":
-            self._whereabouts.brought(read.clause, (read.room, piece))
+            self.body.whereabouts.brought(read.clause, (read.room, piece))
 
     def _feel(self, index: int, beats: Sequence[ReadBeat]) -> None:
         """A mood alone: shown by what is done in it next, or was just done; else by a walk."""
@@ -371,20 +396,20 @@ class KeyframeWriter:
                 return
         last = self.keyframes[-1] if self.keyframes else None
         if last is not None and last.mood is mood:
-            self._show(index)
-        elif last is not None and self._resting is not None and self._plain:
+            self.body.show(index)
+        elif last is not None and self.body.resting is not None and self.body.plain:
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
-            self.keyframes[-1] = self._resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
-            self._show(index)
+            self.keyframes[-1] = self.body.resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
+            self.body.show(index)
         elif beats[index].clause.verb in EXPRESSIONS and mood not in EXPRESSED:
             self.why[index] = UNSHOWN
-        elif last is not None and self._resting is not None:  # nobody gets up for a mood
+        elif last is not None and self.body.resting is not None:  # nobody gets up for a mood
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
-            self._put(index, last.skill, mood, caption, last.furniture, last.room)
-            self._resting = self.keyframes[-1]
+            self.body.put(index, last.skill, mood, caption, last.furniture, last.room)
+            self.body.resting = self.keyframes[-1]
         else:
-            self._put(index, Skill.LOCO, mood, walk_of(mood), "floor", beats[index].room)
-            self._resting = None
+            self.body.put(index, Skill.LOCO, mood, walk_of(mood), "floor", beats[index].room)
+            self.body.resting = None
 
     def _add(
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
@@ -392,8 +417,9 @@ class KeyframeWriter:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
         at = next((one.furniture for one in self.keyframes[:-3:-1] if not one.on_floor), "floor")
-        linked = self._whereabouts.of(read.clause, deed) if skill is Skill.TOUCH else None
-        if linked is not None and affords(linked[1], "touch") and self._has(linked[1]):
+        meant = replace(deed, named=deed.named and bool(pieces_in(read.clause.text)))  # "it" is no table
+        linked = self.body.whereabouts.of(read.clause, meant) if skill is Skill.TOUCH else None
+        if linked is not None and affords(linked[1], "touch") and self.places.has(linked[1]):
             part, deed = None, replace(deed, pieces=(linked[1],), named=True)  # where the thing is
             read = replace(read, room=linked[0] or read.room)
             self.linked.add(index)
@@ -405,13 +431,13 @@ class KeyframeWriter:
         if (
             part is not None
             and same
-            and all(self._has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
+            and all(self.places.has(one.piece[0], read.room or part.script.room) for one in part.keyframes)
         ):
             # Where one is, if such a room has it too: that is decided when the home is found.
-            self._take_part(index, part, read.room or (None if self._here else part.script.room))
+            self._take_part(index, part, read.room or (None if self.body.room else part.script.room))
             self._lay(read, skill)
             return True
-        room, piece = self._piece(read, deed, skill)
+        room, piece = self.places.of(read, deed, skill, self.body, self._ahead)
         if not piece:
             self.why[index] = f"the home has nothing to {NEEDS[skill]} {'at' if skill is Skill.TOUCH else 'on'} for it"
             return False
@@ -420,123 +446,32 @@ class KeyframeWriter:
         if last is not None and (last.skill, last.furniture, last.caption) == (skill, piece, caption):
             others = [one for one in captions if one != caption]
             if not others:
-                self._show(index)
+                self.body.show(index)
                 return True
             caption = others[0]
-        self._is_there(piece, room)
+        self.body.is_there(piece, room)
         for here in self.keyframes[-1:]:  # where one is nobody walks to
             room = here.room if here.furniture == piece != "floor" and None in (room, here.room) else room
-        self._put(index, skill, mood, caption, piece, room)
+        self.body.put(index, skill, mood, caption, piece, room)
         self._lay(read, skill)
         return True
 
     def _lay(self, read: ReadBeat, skill: Skill) -> None:
         """Note where hands have just done something."""
         if skill is Skill.TOUCH:
-            self._whereabouts.laid(read.clause, (self.keyframes[-1].room, self.keyframes[-1].furniture))
+            self.body.whereabouts.laid(read.clause, (self.keyframes[-1].room, self.keyframes[-1].furniture))
 
     def _take_part(self, index: int, part: Part, room: str | None) -> None:
         """The keyframes of a part of a script, without a walk to where one is."""
         self.parts.append((index, part))
         *leading, done = part.keyframes
-        if self._stays(done, room):
+        if self.body.stays(done, room):
             leading, room = [], self.keyframes[-1].room
-        elif leading and self._is_there(leading[0].furniture, room):
+        elif leading and self.body.is_there(leading[0].furniture, room):
             leading = []
         for keyframe in (*leading, done):
             update = {"beat": index, "short_script": len(self.parts) - 1, "room": room}
             self.keyframes.append(keyframe.model_copy(update=update))
-
-    def _stays(self, keyframe: PlannedKeyframe, room: str | None) -> bool:
-        """Whether what a keyframe is done at is what the body sits on, or has just touched."""
-        last = self.keyframes[-1] if self.keyframes else None
-        there = last is not None and last.furniture == keyframe.furniture and last.room in (None, room)
-        return last is not None and there and last.skill is keyframe.skill
-
-    def _is_there(self, piece: str, room: str | None) -> bool:
-        """Whether the body has just walked to a piece; a walk to it in no certain room is then one in `room`."""
-        last = self.keyframes[-1] if self.keyframes else None
-        if last is None or last.skill is not Skill.LOCO or last.furniture != piece or last.room not in (None, room):
-            return False
-        self.keyframes[-1] = last.model_copy(update={"room": room})
-        return True
-
-    def _piece(self, read: ReadBeat, deed: Deed, skill: Skill) -> tuple[str | None, str]:
-        """Room and furniture where it is done: as the beat says, else as is usual, of what there will be."""
-        need, usual = NEEDS[skill], deed_table().usual
-        asked = dict.fromkeys((read.room, room_of(read.clause), self._here or self._ahead))
-        rooms = [room for room in asked if room is not None and room in self._rooms]
-        near = [] if deed.named else [one.furniture for one in self._near()]
-        last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
-        last = [*last, *self._there(deed)]
-        if deed.named:  # what is named and not there has a stand-in, which the story says
-            wanted = [piece for piece in deed.pieces if affords(piece, need)]
-            piece = next((one for one in wanted if self._has(one)), wanted[0] if wanted else "")
-            told = (read.room, room_of(read.clause))
-            fit = (room for room in rooms if room in told or piece in usual[room][need])  # else where it usually is
-            return next((room for room in fit if self._has(piece, room)), None), piece
-        anywhere = need == "sit" or opening_of(skill, read.text)  # no sofa in kitchens; every room has a door
-        for room in rooms:
-            own = [one for one in deed.pieces if anywhere and one in usual[room][need]]
-            options = [*last, *own, *deed.pieces, *usual[room][need]]
-            if piece := next((one for one in options if affords(one, need) and self._has(one, room)), ""):
-                return room, piece
-        general = [piece for those in usual.values() for piece in those[need]]
-        options = [*last, *deed.pieces, *(() if deed.pieces else usual["living_room"][need]), *general]
-        return None, next((piece for piece in options if affords(piece, need) and self._has(piece)), "")
-
-    @property
-    def _here(self) -> str | None:
-        """The room that one was in last, where that is known."""
-        return next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
-
-    def _near(self) -> list[PlannedKeyframe]:
-        """What was last done at furniture, in the room that one is in."""
-        near: list[PlannedKeyframe] = []
-        for one in self.keyframes[:-3:-1]:
-            near += [] if one.on_floor else [one]
-            if one.skill is Skill.LOCO and one.on_floor and one.room is not None:
-                break  # gone to another room
-        return near
-
-    def _there(self, deed: Deed) -> Sequence[str]:
-        """Where one has just gone, and what is sat on there: "walks to the desk and sits down"."""
-        last = self.keyframes[-1] if self.keyframes else None
-        if deed.named or deed.skill is Skill.TOUCH or "floor" in deed.pieces or last is None or last.on_floor:
-            return ()
-        return (*deed_table().seats_at.get(last.furniture, ()), last.furniture) if last.skill is Skill.LOCO else ()
-
-    @property
-    def _rooms(self) -> Collection[str]:
-        return deed_table().usual if self.home is None else self.home
-
-    def _has(self, word: str, room: str | None = None) -> bool:
-        """Whether there will be such furniture: in a room, or anywhere."""
-        if self.home is None or word == "floor":
-            return True
-        kinds = furniture.categories_of(word)
-        return any(category in kinds for name, those in self.home.items() if room in (None, name) for category in those)
-
-    def _put(self, index: int | None, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
-        self.keyframes.append(
-            PlannedKeyframe.model_validate(
-                {
-                    "skill": skill,
-                    "emotion": mood.value,
-                    "caption": caption,
-                    "furniture": piece,
-                    "beat": index,
-                    "room": room,
-                }
-            )
-        )
-
-    def _show(self, index: int) -> None:
-        """The last keyframe shows this beat too."""
-        last = self.keyframes[-1]
-        self.keyframes[-1] = last.model_copy(update={"also": (*last.also, index)})
-        if self._resting is not None:
-            self._resting = self.keyframes[-1]
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that are likeliest to show it and that the library uses in the mood."""

@@ -38,8 +38,12 @@ _TAKES: Final = frozenset(
 _PUTS: Final = frozenset(
     ["put", "set", "lay", "place", "drop", "throw", "toss", "fling", "chuck", "hang", "leave", "rest", "stack"]
 )
+_COMES_OUT: Final = frozenset(["find", "discover", "uncover", "reveal"])
+"""What is so after something was opened comes out of that, where no place is named."""
 _OPENS: Final = frozenset(["open", "unwrap", "unlock", "unpack", "unzip", "untie", "tear"])
 """Things are taken out of what is so."""
+_WHERE_IT_IS: Final = frozenset(["open", "unwrap", "untie", "unseal", "cut", "slice", "examine", "inspect", "study"])
+"""What is so is done where the thing is, wherever else it is done to others."""
 _SUPPORTS: Final = frozenset(("table", "closet", "shelf", "side", "media"))
 """Classes of furniture that only bear or keep a thing: what is done there may be done at another of them."""
 _HELD: Final = re.compile(
@@ -97,12 +101,15 @@ class Whereabouts:
     def of(self, clause: Clause, deed: Deed) -> Spot | None:
         """Where the thing is that hands do a deed to: where it was last, where it came from for "puts it back"; None
         where that is unknown, or the deed has a place of its own."""
-        if deed.named or (deed.pieces and class_of(deed.pieces[0]) not in _SUPPORTS):
+        if deed.named:
             return None
         if self._comes_out(clause):
             return self._opened
         noun = self._thing(clause)
         spots = self._spots.get(noun)
+        elsewhere = deed.pieces and class_of(deed.pieces[0]) not in _SUPPORTS
+        if elsewhere and clause.verb not in _WHERE_IT_IS:
+            return None
         if not spots:
             return None
         if "back" in clause.lemmas or clause.verb in ("return", "replace"):
@@ -116,4 +123,6 @@ class Whereabouts:
 
     def _comes_out(self, clause: Clause) -> bool:
         """Whether a thing is taken out of what was opened just before."""
-        return self._opened is not None and clause.verb in _TAKES and clause.lemmas[1:2] == ("out",)
+        out = clause.verb in _TAKES and clause.lemmas[1:2] == ("out",)
+        found = clause.verb in _COMES_OUT and not ({*clause.lemmas} & _MEANT)
+        return self._opened is not None and (out or found)

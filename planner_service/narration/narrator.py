@@ -25,6 +25,7 @@ from planner_service.narration.tense import bases, form_of
 from planner_service.narration.told import Told, Words, page
 from planner_service.scripts.acted_beats import connects, planned_beats
 from planner_service.scripts.script import LongScript, PlannedKeyframe
+from planner_service.themes.things import things_told
 from scene_graphs.furniture import class_of, display_name, is_known
 
 _FEWEST_LOCATED: Final = 0.5
@@ -38,13 +39,25 @@ Rows = Sequence[tuple[int, PlannedKeyframe]]
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
     """The story of a script by rules; the same seed tells it in the same words."""
     voice = Voice.of(character)
+    title = title_of(script.theme, _mood_of(script), _thing_in(script))
     wording = Wording(voice, Variety(seed, zlib.crc32(script.theme.encode())), places or {})
     if any(beat.text for beat in script.beats):
-        return page(title_of(script.theme, script.beats[-1].emotion), _Teller(script, voice, wording).sentences())
+        return page(title, _Teller(script, voice, wording).sentences())
     told = page("", sentences(wording, list(enumerate(script.keyframes)), named=False))
     # Keyframes of one's own are called what they were given as.
-    title = title_of(script.theme, script.beats[-1].emotion) if script.beats else headline(script.theme)
-    return replace(told, title=title or headline(told.text))
+    return replace(told, title=(title if script.beats else headline(script.theme)) or headline(told.text))
+
+
+def _mood_of(script: LongScript) -> str:
+    """The mood of most that happens now; that of the end, of two as frequent."""
+    now = [beat.emotion for beat in reversed(script.beats) if beat.kind in ("deed", "feeling") and not beat.who]
+    return max(now, key=now.count).value if now else "neutral"
+
+
+def _thing_in(script: LongScript) -> str:
+    """The small thing that deeds are done to most, the first of two as frequent; "" where none is."""
+    of = [word for beat in script.beats if beat.kind == "deed" and beat.seen for word in things_told(beat.text)]
+    return max(of, key=of.count) if of else ""
 
 
 class _Teller:
@@ -55,7 +68,9 @@ class _Teller:
         self.wording = wording
         self.runs = _runs(script.keyframes)
         self.told = _retold(script, voice)
-        self.of: dict[int, Stretch] = {one.beat: one for one in self.told.stretches}
+        self.of: dict[int, Stretch] = {  # that with the verb, of those of one beat
+            one.beat: one for one in sorted(self.told.stretches, key=lambda one: one.verb is not None)
+        }
 
     def sentences(self) -> list[list[Words]]:
         """All sentences, each with what its beats' keyframes do besides."""
@@ -140,14 +155,9 @@ class _Teller:
         verb.before += f"{('sat up' if sits else 'lay back') if there else down}{joint} "
 
     def _keyframes(self, shown: Sequence[tuple[Stretch, tuple[int, ...]]]) -> dict[int, tuple[int, ...]]:
-        """By token the keyframes it tells: stretches that tell them in another order are told as one."""
-        groups: list[tuple[int, int, tuple[int, ...]]] = []
-        for stretch, own in shown:
-            start, end, keyframes = stretch.start, stretch.end, own
-            while groups and max(groups[-1][2]) > min(keyframes):
-                start, _, before = groups.pop()
-                keyframes = tuple(sorted((*before, *keyframes)))
-            groups.append((start, end, keyframes))
+        """By token the keyframes it tells, those of each stretch by its own words alone: a theme may tell what is done
+        later first."""
+        groups = [(stretch.start, stretch.end, own) for stretch, own in shown]
         groups = [self._with_others(*group, *near) for group, near in zip(groups, _between(groups), strict=True)]
         return {at: keyframes for start, end, keyframes in groups for at in range(start, end)}
 
@@ -178,7 +188,7 @@ class _Teller:
 def _retold(script: LongScript, voice: Voice) -> Retelling:
     """The theme, or where few of the beats stand in it, the beats one after the other."""
     told = retell(script.theme, script.beats, voice)
-    if len(told.stretches) >= _FEWEST_LOCATED * len(script.beats):
+    if len({one.beat for one in told.stretches}) >= _FEWEST_LOCATED * len(script.beats):
         return told
     return retell(" ".join(f"{beat.text[:1].upper()}{beat.text[1:]}." for beat in script.beats), script.beats, voice)
 

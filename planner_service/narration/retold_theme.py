@@ -16,7 +16,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.scripts.script import Beat
-from planner_service.themes.lexicon import grammar, is_adjective, is_verb, lemma_of, past
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, lemma_of, past
 from planner_service.themes.protagonist import called, hero_of
 from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -29,6 +29,8 @@ _QUOTED: Final = re.compile(r"[“\"][^”\"]*[”\"]")
 _END: Final = re.compile(r"[.!?…]+[\"”’')\]]*(?=\s|$)|\n+")
 _LEAST: Final = 0.4
 """Share of a beat's words that stand together in the theme where it is told."""
+_NEAR: Final = 6
+"""Words between the two places where a beat's words stand, less one."""
 _ANYBODY: Final = frozenset(("person", "character", "protagonist", "man", "woman", "human", "someone", "somebody"))
 """Nouns that a name says all of."""
 _NO_ONE_PERSON: Final = frozenset(("who", "which", "that", "everyone", "everybody", "nobody", "all", "both"))
@@ -170,10 +172,18 @@ def _located(tokens: Sequence[Token], beats: Sequence[Beat]) -> list[Stretch]:
         verb = _verb(asked, beat.who)
         matcher = SequenceMatcher(None, words, asked, autojunk=False)
         run = matcher.find_longest_match()
-        own = matcher.find_longest_match(blo=verb)  # "with a sigh of relief, | Ida takes off her coat"
         has_verb = run.b <= verb < run.b + run.size
-        run = own if own.b == verb and not has_verb and 2 * own.size > run.size else run
-        if not run.size or run.size < _LEAST * len(asked):
+        own = matcher.find_longest_match(blo=verb)  # "with a sigh of relief, | Ida takes off her coat"
+        if own.b != verb and run.b > verb:
+            own = matcher.find_longest_match(blo=verb, bhi=run.b)
+        apart = own.b == verb and own.size > 0 and not has_verb
+        both = apart and 0 < own.a - (run.a + run.size) < _NEAR and run.size + own.size >= _LEAST * len(asked)
+        if both and 2 * own.size <= run.size:  # "| on the third try | he | bows |"
+            words[run.a : run.a + run.size] = [""] * run.size
+            found.append(Stretch(index, places[run.a], places[run.a + run.size - 1] + 1))
+            run = own
+        run = own if apart and 2 * own.size > run.size else run
+        if not run.size or (run.size < _LEAST * len(asked) and not both):
             continue
         words[run.a : run.a + run.size] = [""] * run.size  # which stand for no other beat
         verb += run.a - run.b
@@ -227,9 +237,18 @@ def _put_in_past(told: Retelling, plain: bool, all_of_it: bool) -> None:
             continue
         if pair := days.get(f"{token.low} {low[number + 3]}") if not token.quoted else None:
             token.told, words[number + 1][1].told = pair.split(" ", 1)
+        elif number and _is_gone_to(words[number - 1][1], token, low[number + 3]):
+            token.told = f"and {past(token.low)}"  # "went | and sat"
         elif not token.quoted and token.told == token.text:
             new = days.get(token.low) or _past(low[number : number + 4], token.low, at in heads, plain or at in joined)
             token.told = (new.capitalize() if token.text[0].isupper() else new) if new else token.told
+
+
+def _is_gone_to(before: Token, token: Token, follows: str) -> bool:
+    """Whether a verb without an ending tells what somebody goes to do: "go sit at the desk", not "go home"."""
+    goes = before.low in ("go", "come") and before.told in ("went", "came")
+    is_noun_too = is_noun(token.low) and follows not in grammar().marks
+    return goes and token.low in bases(token.low) and not (is_noun_too or is_adjective(token.low))
 
 
 def _low(tokens: Sequence[Token]) -> Iterator[str]:

@@ -65,14 +65,16 @@ def story_words() -> StoryWords:
     return known
 
 
-def title_of(theme: str, mood: str) -> str:
-    """A short title: after what the theme is about, else after its mood and the time of day it speaks of."""
+def title_of(theme: str, mood: str, thing: str = "") -> str:
+    """A short title: after what the theme is about, else a thing that something is done to, else after its mood and the
+    time of day it speaks of."""
     found = {
         name: next((words for pattern, words in rows if pattern.search(theme)), "")
         for name, rows in story_words().patterns.items()
     }
     plain = story_words().mood_titles[mood].format(time=found["times"] or "Day")
-    return found["titles"] or re.sub(r"^A (?=[AEIOU])", "An ", plain)
+    about = f"The {thing.title()}" if thing else ""
+    return found["titles"] or about or re.sub(r"^A (?=[AEIOU])", "An ", plain)
 
 
 def headline(text: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from itertools import pairwise, zip_longest
@@ -125,7 +125,7 @@ def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled:
     """
     begun: list[_Line] = []
     waiting = ""
-    for text, keyframes in _pieces(told):
+    for text, keyframes in _in_time(_pieces(told)):
         waiting += text
         if not keyframes:
             continue
@@ -159,6 +159,17 @@ class _Line:
     def seconds(self) -> float:
         """That all of its pages are read in."""
         return sum(_read(page.text) for page in _pages(0, 0, self.text))
+
+
+def _in_time(pieces: Iterable[tuple[str, list[int]]]) -> list[tuple[str, list[int]]]:
+    """Pieces of which each tells what is done after the piece before: those told in another order are one."""
+    found: list[tuple[str, list[int]]] = []
+    for text, keyframes in pieces:
+        while keyframes and any(found_of and max(found_of) > min(keyframes) for _, found_of in found):
+            before, earlier = found.pop()
+            text, keyframes = before + text, [*earlier, *keyframes]
+        found.append((text, keyframes))
+    return found
 
 
 def _pieces(told: Told) -> Iterator[tuple[str, list[int]]]:

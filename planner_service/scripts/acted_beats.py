@@ -10,6 +10,7 @@ from typing import Final
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
+from planner_service.scripts.still_things import still_in
 from scene_graphs.json_fields import Json
 
 UNDONE: Final = "left undone, as the theme asks"
@@ -23,13 +24,6 @@ LEGEND: Final = (
     "not shown: words that the body does not show; left undone: the theme says it is not done"
 )
 """What is meant by the words of `ActedBeats.lines`."""
-MOVED: Final = re.compile(
-    r"\b(?:open|clos|shut|slam|bang|draw|pull|unlock|lock)\w*\b(?:(?!\b(?:and|then)\b)[^,;.])*?"
-    r"\b((?:cabinet|cupboard|wardrobe|closet|fridge|refrigerator|freezer|oven|microwave|dresser|desk)(?: door| drawer)?"
-    r"|drawer|door|gate|window|curtain|blind|shutter|lid|box|chest|suitcase)(s?)\b",
-    re.IGNORECASE,
-)
-"""Words of a beat in which a thing moves: a hand is seen on it, and it stays as it is."""
 RESTS: Final = re.compile(
     r"(?:\w+ly )?(?:sits?|sat|lies|lie|lay|settles?|sinks?|flops?|drops?|slumps?|curls?|perch(?:es)?|collapses?|rests?"
     r"|stays?|sleeps?|slept|naps?|dozes?|nods? off|f(?:a|e)lls? asleep|goes to (?:sleep|bed)"
@@ -88,10 +82,8 @@ class Outcome:
 
     @property
     def unshown(self) -> tuple[str, ...]:
-        """What of its words is not seen where it is acted: what the planner says, and that a thing moves."""
-        moved = MOVED.search(self.beat.text) if self.acted else None
-        still = (f"that the {moved[1].lower()}{moved[2]} move{'' if moved[2] else 's'}",) if moved else ()
-        return (*self.beat.unshown, *still)
+        """What of its words is not seen where it is acted: what the planner says, and what becomes of things."""
+        return (*self.beat.unshown, *(still_in(self.beat.text) if self.acted else ()))
 
     def to_dict(self) -> Json:
         """Plain values for JSON."""

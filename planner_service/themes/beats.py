@@ -12,7 +12,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import grammar, is_known_word, lemma_of
-from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person
+from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
@@ -55,15 +55,18 @@ EXPRESSIONS: Final = {
     verb: mood
     for mood, verbs in {
         Emotion.HAPPY: "laugh smile grin giggle chuckle beam sing rejoice whoop",
-        Emotion.ANGRY: "yell scream curse growl scowl snarl shout rant grumble hate detest resent despise",
+        Emotion.ANGRY: "yell curse growl scowl snarl shout rant grumble hate detest resent despise",
         Emotion.SAD: "sigh frown sniffle",
-        Emotion.STRESSED: "tremble sweat panic flinch shudder gasp dread fear worry",
+        Emotion.STRESSED: "scream shriek tremble sweat panic flinch shudder gasp dread fear worry",
         Emotion.TIRED: "yawn",
         Emotion.DRUNK: "hiccup",
     }.items()
     for verb in verbs.split()
 }
 """Verbs that say how somebody feels who does it."""
+_CRIES: Final = ("scream", "shriek")
+_REMEMBERED: Final = frozenset(("when", "how", "that", "where"))
+"""Joints after which it is told what somebody remembers."""
 _LAUGHS: Final = ("laugh", "giggle", "chuckle", "cackle")
 _TEARS: Final = re.compile(r"\b(?:tears?|cr(?:y|ies|ied|ying)|weeps?|wept|weeping|aches?|hurts?)\b", re.IGNORECASE)
 """Who laughs till these is happy."""
@@ -134,11 +137,14 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     hero = hero_of(clauses)
     pronoun = called(clauses, hero)
     told = (clause for clause in clauses if clause.verb or clause.text.lower() != hero.lower())
-    return tuple(_moods([_read(clause, hero, pronoun) for clause in told]))
+    return tuple(
+        _moods([_read(clause, hero, pronoun, tells_of_others(clause, clauses, hero, pronoun)) for clause in told])
+    )
 
 
-def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
-    who = "" if clause.aside or is_hero(clause.doer, hero, pronoun) else clause.doer
+def _read(clause: Clause, hero: str, pronoun: str, of_others: bool = False) -> ReadBeat:
+    ours = not of_others and is_hero(clause.doer, hero, pronoun)
+    who = "" if clause.aside or ours else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
     if clause.aside and clause.subject and clause.subject.lower() not in text.lower():  # "the door slam"
@@ -155,7 +161,8 @@ def _read(clause: Clause, hero: str, pronoun: str) -> ReadBeat:
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     laughs = clause.verb in _LAUGHS and _TEARS.search(clause.text)
     if (laughs or not sure) and not who and (shown := EXPRESSIONS.get(clause.verb)):
-        emotion, sure = shown, True
+        raves = clause.verb in _CRIES and clause.lemmas[1:2] == ("at",)  # fright is at nobody
+        emotion, sure = Emotion.ANGRY if raves else shown, True
     alone = {"nobody", "nothing", "none"} & set(clause.lemmas) and {"but", "only"} & set(clause.lemmas)
     emotion = None if alone and not sure else emotion  # "finds nobody there, only a parcel"
     theirs = is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
@@ -240,14 +247,19 @@ def _refuse_foreign(text: str) -> None:
 def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
     """Each beat in the mood it happens in: what its words show, else the mood before it, which lasts until another.
 
-    "dresses up and feels excited" is excited from the start.
+    "dresses up and feels excited" is excited from the start. What is remembered has its own mood, which ends with it.
     """
     moods: list[ReadBeat] = []
     mood = Emotion.NEUTRAL
+    recalled = {one.clause.sentence for one in read if one.beat.kind == "memory"}
     for index, one in enumerate(read):
         after = read[index + 1] if index + 1 < len(read) else None
         together = after is not None and after.clause.sentence == one.clause.sentence
         before = read[index - 1] if index else one
+        if one.beat.kind == "memory" or (one.clause.sentence in recalled and one.clause.joint in _REMEMBERED):
+            own = one.felt or mood
+            moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": own})))
+            continue
         spoken = index > 0 and before.sure and before.beat.kind == one.beat.kind == "speech"
         if spoken:  # how it is said tells less than what is said: "“I am so happy!” she shouts"
             mood = before.felt or mood

@@ -330,6 +330,17 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     return mine == theirs or re.search(rf"\b{re.escape(hero)}(?!['’\w])", subject, re.IGNORECASE) is not None
 
 
+def tells_of_others(clause: Clause, clauses: Sequence[Clause], hero: str, pronoun: str) -> bool:
+    """Whether the "they" of a clause are several people named before it, and not whom a theme calls he or she."""
+    if clause.doer.lower() != "they" or pronoun not in ("he", "she"):
+        return False
+    before = [one for one in clauses if (one.sentence, one.place) < (clause.sentence, clause.place)]
+    people = theme_words()["people"]
+    words = [token.low for one in before for token in tokens_of(f"{one.subject} {one.text}")]
+    several = any(lemma_of(word) in people and lemma_of(word) != word for word in words)
+    return several and not re.search(r"\band\b", hero)
+
+
 def head_of(subject: str) -> str:
     """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
     words: list[str] = []

@@ -437,6 +437,8 @@ def _may_act(words: Sequence[Token]) -> bool:
 def _describes(words: Sequence[str]) -> bool:
     """Whether words say how somebody is, or when, and name nobody: "Angry at himself for", "one evening"."""
     low = [word.lower() for word in words]
+    if low == ["no", "one"]:
+        return False
     times = MANNER | grammar().times | grammar().marks | {"one"}
     names = any(is_noun(word) or word in grammar().subjects for word in low[1:]) or any(
         one[:1].isupper() for one in words[1:]

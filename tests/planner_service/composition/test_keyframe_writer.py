@@ -222,7 +222,7 @@ def test_two_beats_that_one_posture_shows_are_one_keyframe() -> None:
 
 
 def test_who_starts_again_does_again_what_was_done_at_rest() -> None:
-    script = planned("He meditates. He throws his phone into the bin and starts again.")
+    script = planned("He meditates. He puts his phone into the bin and starts again.")
     sits = [keyframe for keyframe in script.keyframes if keyframe.skill is Skill.SITDOWN]
     assert [keyframe.beat for keyframe in sits] == [0, 2]
     assert sits[0].caption == sits[1].caption

@@ -40,6 +40,16 @@ def test_what_is_taken_out_of_what_was_opened_is_there() -> None:
     assert known.of(clause("takes out a scarf"), ANYWHERE) == TABLE
 
 
+def test_what_is_found_in_what_was_opened_is_there_and_it_is_opened_where_it_was_put() -> None:
+    known = Whereabouts()
+    known.laid(clause("sets it on the table"), TABLE)
+    sink = Deed(ANYWHERE.row, Skill.TOUCH, ("kitchen sink",), False)
+    assert [known.of(clause(text), sink) for text in ("cuts it", "washes it")] == [TABLE, None]
+    known.laid(clause("opens it"), TABLE)
+    assert known.of(clause("finds a scarf"), ANYWHERE) == TABLE
+    assert known.of(clause("sorts a scarf"), ANYWHERE) is None
+
+
 def test_nobody_walks_to_what_is_in_the_hands_or_the_pockets() -> None:
     for text in ("found them in his pocket", "takes a coin out of her coat pocket"):
         assert is_worn(clause(text))

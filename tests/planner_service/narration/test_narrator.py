@@ -512,3 +512,55 @@ def test_a_model_that_writes_no_story_is_refused() -> None:
     model = ScriptedModel(["no", "no", "no"])
     with pytest.raises(ModelAnswerError, match="no usable"):
         narrate_with_model(long_script([LIBRARY[0]]), SAM, model)
+
+
+def test_what_is_told_before_it_is_done_has_a_span_of_its_own() -> None:
+    theme = "Before going to bed she closes the curtains and sits down."
+    keyframes = [
+        frame("touch", "touch medium height", "curtain", 1),
+        frame("sitdown", "sitting still", "chair", 2),
+        frame("liedown", "lying still", "bed", 0),
+    ]
+    script = made(theme, [beat("going to bed"), beat("closes the curtains"), beat("sits down")], keyframes)
+    told = narrate(script, EMILY)
+    assert [(told.text[span.start : span.end], span.keyframes) for span in told.spans] == [
+        ("going to bed", (2,)),
+        ("closed the curtains", (0,)),
+        ("sat down", (1,)),
+    ]
+
+
+def test_a_beat_whose_words_stand_apart_is_slanted_whole() -> None:
+    theme = "She sits down. On the third try she yodels."
+    script = made(
+        theme,
+        [beat("sits down"), beat("yodels on the third try", why="no")],
+        [frame("sitdown", "sitting still", "chair", 0)],
+    )
+    told = narrate(script, EMILY)
+    assert told.marked(lambda words: f"*{words}*").endswith("*On the third try* she *yodelled*.")
+
+
+@for_each(
+    ("theme", "told"),
+    [
+        ("I go sit at my desk.", "went and sat at"),
+        ("They go fetch a towel and come see it.", "went and fetched a towel and came and saw it"),
+        ("We go home.", "went home"),
+        ("I go to bed.", "went to bed"),
+    ],
+)
+def test_what_somebody_goes_to_do_is_told_in_the_past_too(theme: str, told: str) -> None:
+    assert told in retell(theme, [read.beat for read in beats_of(theme)], Voice.of(EMILY)).text
+
+
+@for_each(
+    ("theme", "title"),
+    [
+        ("She scrubs the sink. She unwraps the scarf and folds the scarf.", "The Scarf"),
+        ("She paces. She sits down. She laughs.", "A Day at Home"),
+    ],
+)
+def test_a_story_is_called_after_what_is_done_in_it(theme: str, title: str) -> None:
+    script = made(theme, [read.beat for read in beats_of(theme)], [frame("loco", "stand still", "floor", 0)])
+    assert narrate(script, EMILY).title == title

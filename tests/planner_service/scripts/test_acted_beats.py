@@ -114,6 +114,8 @@ def test_who_is_only_said_to_lie_or_sleep_does_so_however_the_knees_lie(text: st
     ("text", "unshown"),
     [
         ("slams the cabinet", ["that the cabinet moves"]), ("opens the curtains", ["that the curtains move"]),
+        ("turns off the lamp", ["that it goes off"]), ("blows the candle out", ["that it goes off"]),
+        ("turns the music down", ["that it goes down"]), ("puts on a hat", []), ("sits down", []),
         ("opens a book", []), ("closes her eyes on the bed", []), ("pulls out the chair and sits by the window", []),
     ],
 )  # fmt: skip

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from motion_backend.motion import Character
 from planner_service.pipeline import StoryRequest
+from planner_service.themes.beats import beats_of
 from planner_service.themes.protagonist import cast_by, hero_of
 from planner_service.themes.sentence_parser import clauses_of_text
 
@@ -87,3 +88,17 @@ def test_who_acts_is_whom_a_theme_is_about() -> None:
 def test_whose_mother_calls_is_the_hero_and_not_the_mother() -> None:
     clauses = clauses_of_text("A teenager lies on the bed and her mum calls her for dinner, she gets up and she goes.")
     assert hero_of(clauses).lower() == "a teenager"
+
+
+@for_each(
+    ("theme", "theirs"),
+    [
+        ("Omar asked some friends over. Before they arrive he sets the table.", ["they arrive"]),
+        ("No one calls, so he goes to bed.", ["No one calls"]),
+        ("Nobody calls. He goes to bed.", ["Nobody calls"]),
+        ("Ola and Ben come home. They sit down.", []),
+        ("A tired student comes home. They sit down.", []),
+    ],
+)
+def test_what_several_others_or_nobody_do_is_not_the_heros(theme: str, theirs: list[str]) -> None:
+    assert [one.text for one in beats_of(theme) if one.beat.kind == "other"] == theirs

@@ -1,0 +1,85 @@
+"""What a body has been seen doing so far, and where it is: the keyframes of a script while it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import deepcopy
+from dataclasses import dataclass, field, replace
+
+from motion_backend.motion import Emotion, Skill
+from planner_service.composition.deed_lexicon import Deed, deed_table
+from planner_service.composition.whereabouts import Whereabouts
+from planner_service.scripts.script import PlannedKeyframe
+
+
+@dataclass
+class BodyTrack:
+    """The keyframes so far, and what follows from them."""
+
+    keyframes: list[PlannedKeyframe] = field(default_factory=list)
+    resting: PlannedKeyframe | None = None
+    """What the body sits or lies in; None on its feet."""
+    plain: bool = False
+    """Whether the posture shows nothing yet but that one rests."""
+    whereabouts: Whereabouts = field(default_factory=Whereabouts)
+
+    def copy(self) -> BodyTrack:
+        """The same, to be gone on with in another way."""
+        return replace(self, keyframes=list(self.keyframes), whereabouts=deepcopy(self.whereabouts))
+
+    def put(self, index: int | None, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
+        """One more keyframe, of a beat's or of none."""
+        self.keyframes.append(
+            PlannedKeyframe.model_validate(
+                {
+                    "skill": skill,
+                    "emotion": mood.value,
+                    "caption": caption,
+                    "furniture": piece,
+                    "beat": index,
+                    "room": room,
+                }
+            )
+        )
+
+    def show(self, index: int) -> None:
+        """The last keyframe shows this beat too."""
+        last = self.keyframes[-1]
+        self.keyframes[-1] = last.model_copy(update={"also": (*last.also, index)})
+        if self.resting is not None:
+            self.resting = self.keyframes[-1]
+
+    def stays(self, keyframe: PlannedKeyframe, room: str | None) -> bool:
+        """Whether what a keyframe is done at is what the body sits on, or has just touched."""
+        last = self.keyframes[-1] if self.keyframes else None
+        there = last is not None and last.furniture == keyframe.furniture and last.room in (None, room)
+        return last is not None and there and last.skill is keyframe.skill
+
+    def is_there(self, piece: str, room: str | None) -> bool:
+        """Whether the body has just walked to a piece; a walk to it in no certain room is then one in `room`."""
+        last = self.keyframes[-1] if self.keyframes else None
+        if last is None or last.skill is not Skill.LOCO or last.furniture != piece or last.room not in (None, room):
+            return False
+        self.keyframes[-1] = last.model_copy(update={"room": room})
+        return True
+
+    @property
+    def room(self) -> str | None:
+        """The room that one was in last, where that is known."""
+        return next((keyframe.room for keyframe in reversed(self.keyframes) if keyframe.room), None)
+
+    def near(self) -> list[PlannedKeyframe]:
+        """What was last done at furniture, in the room that one is in."""
+        near: list[PlannedKeyframe] = []
+        for one in self.keyframes[:-3:-1]:
+            near += [] if one.on_floor else [one]
+            if one.skill is Skill.LOCO and one.on_floor and one.room is not None:
+                break  # gone to another room
+        return near
+
+    def there(self, deed: Deed) -> Sequence[str]:
+        """Where one has just gone, and what is sat on there: "walks to the desk and sits down"."""
+        last = self.keyframes[-1] if self.keyframes else None
+        if deed.named or deed.skill is Skill.TOUCH or "floor" in deed.pieces or last is None or last.on_floor:
+            return ()
+        return (*deed_table().seats_at.get(last.furniture, ()), last.furniture) if last.skill is Skill.LOCO else ()

@@ -1,0 +1,35 @@
+"""What only stands for a beat, and is worse than nothing: who would have to sit or lie down, get up or go for it."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from motion_backend.motion import RISINGS, Skill
+from planner_service.composition.body_track import BodyTrack
+from planner_service.composition.deed_lexicon import Deed
+from planner_service.composition.deed_reader import DeedReader
+from planner_service.composition.gainsaid import is_gainsaid
+from planner_service.scripts.acted_beats import connects
+from planner_service.themes.beats import ReadBeat
+
+SEATED_FOR_IT: Final = 0.7
+"""Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
+GONE_FOR_IT: Final = 0.3
+"""and nobody lies down or goes anywhere for what is less likely than this."""
+_POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN)
+
+
+def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack, reader: DeedReader) -> bool:
+    """Whether what a body does for a beat only stands for it, and is more than it would do where it is."""
+    new = after.keyframes[len(before.keyframes) :]
+    done = [one for one in new if not connects(one)] or new
+    if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
+        return False
+    seated = before.resting is None and done[-1].skill in _POSTURES
+    rises = before.resting is not None and (done[-1].skill not in _POSTURES or any(k.skill in RISINGS for k in new))
+    if not (seated or rises or len(new) > len(done)):
+        return False  # a hand, or steps, where one is
+    least = SEATED_FOR_IT if rises or (seated and done[-1].skill is Skill.SITDOWN) else GONE_FOR_IT
+    if max(reader.likelihood(read.clause, one) for one in done) < least:
+        return True
+    return (seated or rises) and is_gainsaid(read.clause, done)
