@@ -417,7 +417,8 @@ class KeyframeWriter:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
         at = next((one.furniture for one in self.keyframes[:-3:-1] if not one.on_floor), "floor")
-        meant = replace(deed, named=deed.named and bool(pieces_in(read.clause.text)))  # "it" is no table
+        by_pronoun = deed.named and bool({"it", "them"} & {*read.clause.lemmas}) and not pieces_in(read.clause.text)
+        meant = replace(deed, named=deed.named and not by_pronoun)  # "it" is the parcel, not the table it was set on
         linked = self.body.whereabouts.of(read.clause, meant) if skill is Skill.TOUCH else None
         if linked is not None and affords(linked[1], "touch") and self.places.has(linked[1]):
             part, deed = None, replace(deed, pieces=(linked[1],), named=True)  # where the thing is
