@@ -214,7 +214,7 @@ def test_one_goes_down_to_the_floor_and_up_from_it_over_hands_and_knees(which: i
 
 
 def test_feet_do_not_slide_on_the_way_down_and_up() -> None:
-    # What is walked before is held against walkers, who swing their toes low (test_how_people_walk): its last step, too.
+    # What is walked before is held against walkers, who swing their toes low (test_how_people_walk), its last step too.
     down, up = on_the_floor("lying still")[1], up_again("lying still", "get up slowly")
     lies, rises = during(down, PhaseKind.EDGE, PhaseKind.LIEDOWN), during(up, PhaseKind.GETUP, PhaseKind.STANDUP)
     last_step = round(TAILS[PartKind.WALK, PartKind.LIE] * FPS)
