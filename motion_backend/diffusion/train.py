@@ -226,9 +226,8 @@ def dropped(batch: Batch, config: TrainConfig, rng: np.random.Generator) -> Cond
     """The conditions of a batch, some of them not told."""
     given, count = batch.given, len(batch.windows)
     drawn = torch.from_numpy(rng.random((7, count), dtype=np.float32)).to(batch.windows.device)
-    facing, *kept = (drawn[:1] < config.facing_dropped, *(drawn[1:] >= config.dropped))
-    text, pelvis, hand, scene, made_of, gait = kept
-    untold = (batch.periodic & facing[0])[:, None]
+    text, pelvis, hand, scene, made_of, gait = (drawn[1:] >= config.dropped).unbind()
+    untold = (batch.periodic & (drawn[0] < config.facing_dropped))[:, None]
     told = torch.cat([given.pelvis[:, :3], given.pelvis[:, 3:5] * ~untold, given.pelvis[:, 5:6],
                       given.pelvis[:, 6:7] * ~untold, given.pelvis[:, 7:]], dim=1)  # fmt: skip
     return replace(
