@@ -1,7 +1,7 @@
 """What stands around the body and around its goal, as one token: a vision transformer over two voxel grids (LINGO A.2).
 
-The grids are those of `occupancy_pair`, put one on the other: 64 heights are the channels of a 32 × 32 plan. For training
-they are looked up for a whole batch at once, on its device: 32 bits a cell of a room say at which of the grid's heights
+The grids are those of `occupancy_pair`, put one on the other: 64 heights are the channels of a 32 × 32 plan.
+For training they are looked up for a whole batch at once: 32 bits a cell say at which of the grid's heights
 something is solid there.
 """
 
