@@ -51,11 +51,16 @@ SHARES: Final[Shares] = {
 }  # fmt: skip
 """Of windows where all skills are learned; those of which there is no motion fall to the others."""
 ACTED_SHARES: Final[Shares] = {
-    (MadeOf.PROCEDURAL, PartKind.WALK): 0.24, (MadeOf.PROCEDURAL, PartKind.TURN): 0.08,
+    (MadeOf.PROCEDURAL, PartKind.WALK): 0.17, (MadeOf.PROCEDURAL, PartKind.TURN): 0.06,
     (MadeOf.PROCEDURAL, PartKind.SIT): 0.18, (MadeOf.PROCEDURAL, PartKind.LIE): 0.11,
-    (MadeOf.PROCEDURAL, PartKind.RISE): 0.19, (MadeOf.PROCEDURAL, PartKind.REACH): 0.2,
+    (MadeOf.PROCEDURAL, PartKind.RISE): 0.22, (MadeOf.PROCEDURAL, PartKind.REACH): 0.26,
 }  # fmt: skip
 """Of windows where all that our own body acts is learned, starts, stops and odd walks too."""
+ENDING_SHARES: Final[Shares] = {
+    (MadeOf.PROCEDURAL, PartKind.SIT): 0.21, (MadeOf.PROCEDURAL, PartKind.LIE): 0.12,
+    (MadeOf.PROCEDURAL, PartKind.RISE): 0.25, (MadeOf.PROCEDURAL, PartKind.REACH): 0.13,
+}  # fmt: skip
+"""Of windows whose end the scheduler learns: recordings end where the camera stopped, not where an action was over."""
 FLOORS: Final = ((ROOT, 0.1), (TURNS, 0.04), (PLACES, 0.02), (CONTACTS, 0.3))
 """Deviations that no feature goes below: what hardly varies is not blown up."""
 SAMPLED: Final = 2048
@@ -222,13 +227,21 @@ def scheduler_learner(sizes: SchedulerSizes, config: TrainConfig, device: str = 
     return Learner("scheduler", network, loss, sizes.to_dict())
 
 
+def usable(device: str) -> str:
+    """A device that this machine has. TrainingError for any other."""
+    try:
+        torch.zeros(1, device=device)
+    except (RuntimeError, AssertionError) as error:
+        raise TrainingError(f"{device!r:.40} cannot be trained on ({error!s:.120})", "give cpu, or cuda") from error
+    return device
+
+
 def dropped(batch: Batch, config: TrainConfig, rng: np.random.Generator) -> Conditions:
     """The conditions of a batch, some of them not told."""
     given, count = batch.given, len(batch.windows)
     drawn = torch.from_numpy(rng.random((7, count), dtype=np.float32)).to(batch.windows.device)
-    facing, *kept = (drawn[:1] < config.facing_dropped, *(drawn[1:] >= config.dropped))
-    text, pelvis, hand, scene, made_of, gait = kept
-    untold = (batch.periodic & facing[0])[:, None]
+    text, pelvis, hand, scene, made_of, gait = (drawn[1:] >= config.dropped).unbind()
+    untold = (batch.periodic & (drawn[0] < config.facing_dropped))[:, None]
     told = torch.cat([given.pelvis[:, :3], given.pelvis[:, 3:5] * ~untold, given.pelvis[:, 5:6],
                       given.pelvis[:, 6:7] * ~untold, given.pelvis[:, 7:]], dim=1)  # fmt: skip
     return replace(

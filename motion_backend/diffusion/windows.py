@@ -22,7 +22,7 @@ from motion_backend.backend_protocol import PartKind
 from motion_backend.diffusion.conditions import GAITS, MAX_SECONDS, TIME_UNIT, Conditions, MadeOf
 from motion_backend.diffusion.dataset import PERIODIC, Passage, Stretch
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, quat_to_six, twist
-from motion_backend.diffusion.room_voxels import RoomVoxels
+from motion_backend.diffusion.scene_encoder import RoomVoxels
 from motion_backend.mocap.augmentation import SWAPPED, mirror_words
 from motion_backend.mocap.clip import ClipError
 from motion_backend.motion import FPS

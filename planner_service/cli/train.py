@@ -126,7 +126,7 @@ def diffusion(
     from motion_backend.diffusion.checkpoint import load_denoiser
     from motion_backend.diffusion.denoiser import PRESETS
     from motion_backend.diffusion.losses import CONTACT_LOSSES, WALK_LOSSES
-    from motion_backend.diffusion.train import ACTED_SHARES, SHARES, WALK_SHARES, TrainConfig, denoiser_learner
+    from motion_backend.diffusion.train import ACTED_SHARES, SHARES, WALK_SHARES, TrainConfig, denoiser_learner, usable
     from motion_backend.mocap.dataset_file import read_dataset
 
     if preset not in PRESETS:
@@ -148,7 +148,7 @@ def diffusion(
     )
     people = None if judge is None else read_dataset(judge)
     begun = None if start is None else load_denoiser(start)[0]
-    learner = denoiser_learner(sizes, config, _usable(device))
+    learner = denoiser_learner(sizes, config, usable(device))
     _train(learner, bank, bank.windows(shares), config, out, people, begun, pictures)
 
 
@@ -171,30 +171,15 @@ def scheduler(
 ) -> None:
     """Train the completion scheduler (LINGO A.5): whether the action of a window is over."""
     from motion_backend.diffusion.completion_scheduler import SCHEDULER_PRESETS
-    from motion_backend.diffusion.conditions import MadeOf
-    from motion_backend.diffusion.dataset import PERIODIC
-    from motion_backend.diffusion.train import SHARES, TrainConfig, scheduler_learner
+    from motion_backend.diffusion.train import ENDING_SHARES, TrainConfig, scheduler_learner, usable
 
     if preset not in SCHEDULER_PRESETS:
         raise RequestError(f"{preset!r:.40} is none of {', '.join(SCHEDULER_PRESETS)}", at="--preset")
-    # Recordings end where the camera stopped, not where an action was over.
-    ending = {key: share for key, share in SHARES.items() if key[0] is MadeOf.PROCEDURAL and key[1] not in PERIODIC}
     bank = _bank(_training(datasets), _encoder(datasets), scenes=False)
     rate = 1e-3 if preset == "small" else 1e-4
     config = TrainConfig(steps, batch, rate, seed=seed, save_every=save_every, seconds=seconds)
-    learner = scheduler_learner(SCHEDULER_PRESETS[preset], config, _usable(device))
-    _train(learner, bank, bank.windows(ending), config, out, pictures=pictures)
-
-
-def _usable(device: str) -> str:
-    """A device that this machine has. RequestError for any other."""
-    import torch
-
-    try:
-        torch.zeros(1, device=device)
-    except (RuntimeError, AssertionError) as error:
-        raise RequestError(f"{device!r:.40} cannot be trained on ({error!s:.120})", at="--device") from error
-    return device
+    learner = scheduler_learner(SCHEDULER_PRESETS[preset], config, usable(device))
+    _train(learner, bank, bank.windows(ENDING_SHARES), config, out, pictures=pictures)
 
 
 def _training(files: list[Path]) -> list[Stretch]:

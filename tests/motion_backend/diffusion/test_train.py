@@ -24,9 +24,8 @@ from motion_backend.diffusion.dataset import Passage, Stretch, read_sentences, r
 from motion_backend.diffusion.denoiser import DenoiserSizes
 from motion_backend.diffusion.losses import LossWeights, losses
 from motion_backend.diffusion.motion_features import HISTORY, HeadingFrame, Poses, to_features
-from motion_backend.diffusion.room_voxels import RoomVoxels
 from motion_backend.diffusion.sampler import Sampler, Scale
-from motion_backend.diffusion.scene_encoder import voxel_image
+from motion_backend.diffusion.scene_encoder import RoomVoxels, voxel_image
 from motion_backend.diffusion.train import (
     Adam,
     Learner,
@@ -37,6 +36,7 @@ from motion_backend.diffusion.train import (
     dropped,
     scheduler_learner,
     train,
+    usable,
 )
 from motion_backend.diffusion.windows import WindowBank, Windows, wordings
 from motion_backend.mocap.augmentation import mirror
@@ -195,6 +195,12 @@ def test_a_run_by_the_clock_ends_with_it_and_with_its_lowest_rate(tmp_path: Path
     bank, soon = bank_of(two_people()), replace(config, seconds=1e-6)
     weights = train(denoiser_learner(TINY, soon), bank, bank.windows({WALK: 1.0}), soon, tmp_path)
     assert weights.config["training"]["steps_done"] == 1
+
+
+def test_a_device_that_is_not_there_is_refused() -> None:
+    assert usable("cpu") == "cpu"
+    with pytest.raises(TrainingError, match="'gpu7' cannot be trained on"):
+        usable("gpu7")
 
 
 def test_dropout_is_of_training_alone_and_follows_from_the_step() -> None:
