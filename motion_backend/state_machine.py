@@ -166,5 +166,5 @@ def _not_up(action: Action, body: Kinematics) -> str:
     frames = len(stood) if stood.all() else int(np.argmin(stood))
     if frames >= round(RISEN[2] * body.motion.fps):
         return ""
-    stood = frames / body.motion.fps
-    return f"{moment(action.keyframe)}: the body should stand for {RISEN[2]} s at its end, and did for {stood:.1f} s"
+    seconds = frames / body.motion.fps
+    return f"{moment(action.keyframe)}: the body should stand for {RISEN[2]} s at its end, and did for {seconds:.1f} s"

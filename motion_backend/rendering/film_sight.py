@@ -28,7 +28,7 @@ SLACK: Final = {Subject.BODY: 0.06, Subject.FACE: 0.06, Subject.HANDS: 0.015}
 is hidden by it."""
 NEAREST: Final = 0.06
 """Metres before the eye from which on anything is seen."""
-ASKED: Final = {Subject.BODY: (0.4, 0.5), Subject.FACE: (0.0, 0.7), Subject.HANDS: (0.0, 0.4)}
+ASKED: Final = {Subject.BODY: (0.4, 0.5), Subject.FACE: (0.0, 0.7), Subject.HANDS: (0.0, 0.25)}
 """The shares of the near side of a body, and of its head or of its hands, from which they count as shown: who sits
 behind a table is."""
 ENOUGH: Final = 0.96

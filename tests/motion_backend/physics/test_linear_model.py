@@ -44,7 +44,7 @@ def test_inverse_dynamics_give_what_differences_of_forward_dynamics_give() -> No
 def test_a_contact_that_comes_within_a_difference_is_no_slope() -> None:
     # The plan's sole lies on the floor to less than what is added: taken as a slope, that would be a million times it.
     _, done = walked(40)
-    touching = framed(done.moments[0], done.moments[1])
+    touching = framed(done.moments[1], done.moments[2])
     model = linearise(empty_room().coarse, [touching])[0]
     assert np.isfinite(model.a).all()
     assert np.abs(model.a[NV:, :NV]).max() < 2e3
