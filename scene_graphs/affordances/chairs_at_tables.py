@@ -20,7 +20,7 @@ from scene_graphs.affordances.usable_furniture import Pull, can_be_pulled, is_as
 from scene_graphs.furniture import class_of
 from scene_graphs.layout import Layout, Placed, wrap
 
-FROM_TABLE: Final = (0.34, 0.3, 0.38, 0.42, 0.46)
+FROM_TABLE: Final = (0.48, 0.46, 0.44)
 """Gaps between the front of a seat and the edge of the table, the best first (metres)."""
 NEAR: Final = 0.5
 """A chair that stands square before the table with no wider gap stays where it is (metres)."""
