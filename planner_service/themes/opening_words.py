@@ -34,9 +34,11 @@ _TO_THE_DOOR: Final = re.compile(
 )
 _COMES_IN: Final = re.compile(
     r"\b(?:com|came|get|got|arriv|return|walk|step|storm|burst|stumbl|stagger|rush|hurr|bound|trudg|stomp|sneak|slip)\w*"
-    r"\b(?:(?!\b(?:and|then|to)\b)[^,;.])*?\b(?:home|in|inside|indoors|through the (?:front )?door|from (?:work|school)"
+    r"\b(?:(?!\b(?:and|then|to)\b)[^,;.])*?\b(?:home|indoors|through the (?:front )?door|from (?:work|school)"
+    r"|(?:in|inside)(?=$|[,.;]| (?:late|early|from|through|after|with|and|at|again|\w+ly|tired|drunk|soaked|wet)\b)"
     r"|from (?:the|a|his|her|their) (?:\w+ )?(?:shift|office|shop|funeral|party|school|hospital|walk|run|trip|date))\b"
-    r"|^(?:\w+ )?(?:gets|got|is|was) (?:back|home)\b|\benters? (?:the )?(?:house|home|flat|apartment|room)\b",
+    r"|^(?:\w+ )?(?:(?:gets|got) home|(?:gets|got|is|was) back(?=$|[,.;]| (?:home|from|late|early|at|again)))\b"
+    r"|\benters? (?:the )?(?:house|home|flat|apartment|room)\b",
     re.IGNORECASE,
 )
 _NOT_IN: Final = re.compile(

@@ -163,6 +163,8 @@ def test_without_a_door_it_is_done_where_it_was_planned_and_noted() -> None:
         ("comes home tired", True), ("gets in late", True), ("came back from the office", True), ("got home", True),
         ("bursts through the door", True), ("walks in circles", False), ("gets in bed", False),
         ("walks in the living room", False), ("gets up and comes to", False), ("paces up and down", False),
+        ("is home alone", False), ("was home all day", False), ("came down in tears", False),
+        ("is back from work", True), ("gets back to work", False), ("walks in soaked", True),
     ],
 )  # fmt: skip
 def test_who_comes_in_is_told_from_who_is_there(said: str, comes: bool) -> None:
