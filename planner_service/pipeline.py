@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, Final, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
@@ -29,6 +30,7 @@ from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.narration.llm_narrator import narrate_with_model
 from planner_service.narration.narrator import narrate
 from planner_service.narration.told import Told
+from planner_service.scripts.acted_beats import ActedBeats, Shot, acted_beats, lost_in_moving, shot_of
 from planner_service.scripts.captions import Vocabulary
 from planner_service.scripts.script import MAX_NAME_LENGTH, Keyframe, LongScript, Pronouns
 from planner_service.themes.protagonist import cast_by
@@ -195,6 +197,30 @@ class Story:
     """First frame and stop frame of every action."""
     figures: tuple[story_metrics.KeyframeFigures, ...]
     report: dict[str, Any] = field(default_factory=dict)
+
+    @cached_property
+    def beats(self) -> ActedBeats:
+        """What became of the theme's beats, now that the body has moved."""
+        return acted_beats(self.planned.script.beats, self._shots)
+
+    @cached_property
+    def _shots(self) -> tuple[Shot, ...]:
+        return tuple(map(self._shot, self.figures))
+
+    def _shot(self, figure: story_metrics.KeyframeFigures) -> Shot:
+        done = [note.words for note in self.motion.notes if note.keyframe == figure.keyframe]
+        return replace(
+            shot_of(self.planned.script.keyframes[figure.keyframe]),
+            reached=figure.reached,
+            reason=figure.reason,
+            seconds=figure.seconds,
+            otherwise=(*done, *filter(None, (self.planned.stage.instead(figure.keyframe),))),
+        )
+
+    @property
+    def told(self) -> Told:
+        """The story as it is told, with all among its thoughts that the body was not seen doing."""
+        return self.planned.told.with_unseen(lost_in_moving(self.planned.script.beats, self._shots))
 
     @property
     def role(self) -> Role:

@@ -198,10 +198,10 @@ def _bar(console: Console) -> Progress:
 
 def _close(console: Console, made: Story, files: list[Path]) -> None:
     """The closing table: what was reached, and how well; and which beats of the theme were acted."""
-    from planner_service.output.story_export import beats_of, told_notes
+    from planner_service.output.story_export import told_notes
 
-    console.print(f"\n{made.planned.told.title}\n", style="bold", highlight=False)
-    told = made.planned.told
+    told = made.told
+    console.print(f"\n{told.title}\n", style="bold", highlight=False)
     console.print(_slanted(told, console), end="\n\n", highlight=False)
     console.print(f"played by {', '.join(told_look(made.planned.character))}\n", highlight=False)
     table = plain_table(
@@ -220,7 +220,7 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     for line in made.planned.stage.explain():
         console.print(f"  {line}", highlight=False)
     console.print(f"\n{_figures(made.report)}", highlight=False)
-    for line in beats_of(made).lines():
+    for line in made.beats.lines():
         console.print(line, highlight=False, soft_wrap=True)
     movers = _movers(made.report["made_by"], made.planned.request.backend)
     encoder = f" · encoder: {made.planned.script.encoder}" if made.planned.script.encoder else ""

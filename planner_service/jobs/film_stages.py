@@ -6,17 +6,15 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import accumulate, pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
 from sqlalchemy.exc import InterfaceError, OperationalError
 
-from motion_backend.motion import join
 from planner_service.jobs.story_stages import OpenStory, read_segments
 from planner_service.output.film import Filmed, write_film
-from planner_service.pipeline import Pipeline
+from planner_service.pipeline import Pipeline, judge
 from planner_service.store.film_store import filmed_by
 from planner_service.store.story_store import Made, Stories
 
@@ -52,8 +50,7 @@ class Filmer:
         """What there is of a story to film. StoryGone."""
         story = OpenStory(self.store, story_id, self.pipeline)
         motions = read_segments(self.store, story_id, range(len(story.actions)))
-        segments = tuple(pairwise(accumulate(map(len, motions), initial=0)))
-        return Filmed(story.stage.home, join(motions), story.planned.told, segments, story.role)
+        return Filmed.of(judge(story.planned, story.actions, motions, lambda _stage, _share: None))
 
     def _telling(self, film_id: str) -> Callable[[float], None]:
         told = time.monotonic()

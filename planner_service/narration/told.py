@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Final
 
@@ -44,6 +44,12 @@ class Told:
         plain = [self.text[end:start] for end, start in zip(ends, starts, strict=True)]
         thoughts = [mark(self.text[span.start : span.end]) for span in self.thoughts]
         return plain[0] + "".join(thought + text for thought, text in zip(thoughts, plain[1:], strict=True))
+
+    def with_unseen(self, keyframes: Collection[int]) -> Told:
+        """The same with what only these keyframes tell among its thoughts."""
+        lost = [replace(span, keyframes=()) for span in self.spans if {*span.keyframes}.issubset(keyframes)]
+        thoughts = _joined(self.text, sorted([*self.thoughts, *lost], key=lambda span: span.start))
+        return replace(self, thoughts=tuple(thoughts)) if lost else self
 
     def to_dict(self) -> Json:
         """Title, text, and which letters tell which keyframes, or what is not seen."""
@@ -100,11 +106,11 @@ def _trimmed(before: str, words: str, keyframes: tuple[int, ...] = ()) -> Span:
 
 
 def _joined(text: str, spans: Sequence[Span]) -> list[Span]:
-    """Spans with those made one between which there is nothing but white space."""
+    """Spans with those made one that overlap, or between which there is nothing but white space."""
     joined: list[Span] = []
     for span in spans:
         if joined and not text[joined[-1].end : span.start].strip():
-            joined[-1] = Span(joined[-1].start, span.end, ())
+            joined[-1] = Span(joined[-1].start, max(joined[-1].end, span.end), ())
         else:
             joined.append(span)
     return joined

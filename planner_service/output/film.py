@@ -86,7 +86,7 @@ class Filmed:
     @staticmethod
     def of(story: Story) -> Filmed:
         """One that was just made."""
-        return Filmed(story.planned.home, story.motion, story.planned.told, story.segments, story.role)
+        return Filmed(story.planned.home, story.motion, story.told, story.segments, story.role)
 
 
 def write_film(

@@ -6,7 +6,7 @@ import json
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +22,6 @@ from planner_service.narration.told import UNSEEN
 from planner_service.output.film import Filmed, write_film
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
-from planner_service.scripts.acted_beats import ActedBeats, acted_beats, shot_of
 from planner_service.scripts.caption_actions import look_of
 from scene_graphs.errors import UserError
 from scene_graphs.home import home_to_dict
@@ -99,9 +98,7 @@ def _write_storyboard(story: Story, path: Path) -> Path:
     planned, known = story.planned, {placed.id for placed in story.planned.home.objects}
     # What is done on the floor has no piece of furniture to outline.
     targets = [action.object_id if action.object_id in known else None for action in story.actions]
-    return storyboard(
-        planned.home, story.motion, planned.script.keyframes, path, planned.told.title, targets, story.role
-    )
+    return storyboard(planned.home, story.motion, planned.script.keyframes, path, story.told.title, targets, story.role)
 
 
 class _Tried(Exception):  # noqa: N818
@@ -141,14 +138,14 @@ def story_to_markdown(story: Story) -> str:
     rooms = [f"- {line}" for line in planned.stage.explain()]
     notes = [f"- {line}" for line in told_notes(story)] or ["- nothing"]
     repairs = [f"- {line}" for line in script.repairs] or ["- none"]
-    beats = [f"- {line}" for line in beats_of(story).lines()]
+    beats = [f"- {line}" for line in story.beats.lines()]
     return "\n".join(
         [
-            f"# {planned.told.title}",
+            f"# {story.told.title}",
             "",
-            planned.told.marked(lambda words: f"*{words}*"),
+            story.told.marked(lambda words: f"*{words}*"),
             "",
-            *([UNSEEN.format(this="*this*"), ""] if planned.told.thoughts else []),
+            *([UNSEEN.format(this="*this*"), ""] if story.told.thoughts else []),
             "## How it was made",
             "",
             *([f"Theme: {script.theme}", ""] if script.theme else []),
@@ -214,7 +211,7 @@ def story_to_dict(story: Story) -> dict[str, Any]:
     planned = story.planned
     return {
         "theme": planned.script.theme,
-        **planned.told.to_dict(),
+        **story.told.to_dict(),
         "seed": planned.request.seed,
         "backend": planned.request.backend,
         "character": vars(planned.character),
@@ -236,26 +233,6 @@ def physics_mode(story: Story) -> str:
     return str(physics["mode"]) if physics else "none"
 
 
-def beats_of(story: Story) -> ActedBeats:
-    """What became of the theme's beats, now that the body has moved."""
-    keyframes = story.planned.script.keyframes
-    notes = story.motion.notes
-    shots = [
-        replace(
-            shot_of(keyframes[figure.keyframe]),
-            reached=figure.reached,
-            reason=figure.reason,
-            seconds=figure.seconds,
-            otherwise=(
-                *(note.words for note in notes if note.keyframe == figure.keyframe),
-                *filter(None, (story.planned.stage.instead(figure.keyframe),)),
-            ),
-        )
-        for figure in story.figures
-    ]
-    return acted_beats(story.planned.script.beats, shots)
-
-
 def report_to_dict(story: Story) -> dict[str, Any]:
     """How well every step went."""
     planned = story.planned
@@ -266,7 +243,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "backend": planned.request.backend,
         "physics_mode": physics_mode(story),
         "seed": planned.request.seed,
-        **beats_of(story).to_dict(),
+        **story.beats.to_dict(),
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
         "motion": story.report,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from motion_backend.motion import RISINGS, Emotion, Skill
@@ -172,6 +172,16 @@ def acted_beats(beats: Sequence[Beat], shots: Sequence[Shot]) -> ActedBeats:
     spare = sum(shot.seconds for shot in shots if not shot.beats)
     other = sum(shot.seconds for shot in shots if acted.isdisjoint(shot.beats))
     return ActedBeats(outcomes, spare / whole if whole else 0.0, other / whole if whole else 0.0)
+
+
+def lost_in_moving(beats: Sequence[Beat], shots: Sequence[Shot]) -> frozenset[int]:
+    """Indices of the shots that were to show beats, of which the body, as it moved, was seen doing none."""
+    before = acted_beats(beats, [replace(shot, reached=None, otherwise=()) for shot in shots]).outcomes
+    after = acted_beats(beats, shots).outcomes
+    lost = {
+        index for index, (one, other) in enumerate(zip(before, after, strict=True)) if one.acted and not other.acted
+    }
+    return frozenset(at for at, shot in enumerate(shots) if shot.beats and lost.issuperset(shot.beats))
 
 
 def _outcome(beat: Beat, index: int, shots: Sequence[Shot]) -> Outcome:

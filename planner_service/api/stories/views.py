@@ -14,7 +14,8 @@ from typing import Any, Final
 from motion_backend.body.cast import Look, Role
 from motion_backend.motion import FPS, Character, Emotion, Motion, Skill, join
 from planner_service.jobs.story_stages import STAGES, read_segments
-from planner_service.scripts.acted_beats import Shot, acted_beats, beats_in, leads
+from planner_service.narration.told import Told
+from planner_service.scripts.acted_beats import Outcome, Shot, acted_beats, beats_in, leads, lost_in_moving
 from planner_service.scripts.script import Beat
 from planner_service.store.story_store import Artifact, Record, Stories
 from planner_service.store.tables import GIVEN_UP, state_of
@@ -67,6 +68,7 @@ def story_shown(record: Record) -> Json:
     frames = segments[-1]["end"] if segments else 0
     complete = bool(made.get("count")) and len(segments) == made.get("count")
     keyframes = _keyframes(made, segments)
+    beats, shots = [Beat.model_validate(row) for row in made.get("beats", [])], _shots(keyframes, segments)
     shown = {
         "method": record.method,
         "character": made.get("character", record.character),
@@ -75,7 +77,7 @@ def story_shown(record: Record) -> Json:
         "text": made.get("text"),
         "graph": made.get("graph", {}),
         "home": made.get("home"),
-        "beats": _beats(made, keyframes, segments),
+        "beats": [_plain(one) for one in acted_beats(beats, shots).outcomes],
         "keyframes": keyframes,
         "reused": made.get("reused", 0),
         "take": made.get("take", 0),
@@ -83,6 +85,8 @@ def story_shown(record: Record) -> Json:
         "report": made.get("report"),
     }
     lists = {name: made.get(name, []) for name in ("spans", "thoughts", "repairs", "short_scripts")}
+    if made.get("text"):
+        lists["thoughts"] = Told.from_dict(made).with_unseen(lost_in_moving(beats, shots)).to_dict()["thoughts"]
     return story_summary(record, frames) | shown | lists
 
 
@@ -98,11 +102,11 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
     return rows
 
 
-def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json]:
-    """What became of the beats, as far as that is known."""
+def _shots(keyframes: list[Json], segments: list[Json]) -> list[Shot]:
+    """What of every keyframe says whether its beats are acted, as far as that is known."""
     reasons = {segment["keyframe"]: segment.get("reason", "") for segment in segments}
     otherwise = {segment["keyframe"]: _words(segment.get("otherwise")) for segment in segments}
-    shots = [
+    return [
         Shot(
             beats_in(row["beat"], row["also"]),
             Emotion(row["mood"]),
@@ -113,9 +117,10 @@ def _beats(made: Json, keyframes: list[Json], segments: list[Json]) -> list[Json
         )
         for row in keyframes
     ]
-    beats = [Beat.model_validate(row) for row in made.get("beats", [])]
-    rows = [one.to_dict() for one in acted_beats(beats, shots).outcomes]
-    return [{name: value for name, value in row.items() if name != "stood_for"} for row in rows]  # `BeatShown` tells it
+
+
+def _plain(outcome: Outcome) -> Json:
+    return {name: value for name, value in outcome.to_dict().items() if name != "stood_for"}  # `BeatShown` tells it
 
 
 def _words(otherwise: Any) -> tuple[str, ...]:

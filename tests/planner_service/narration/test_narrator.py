@@ -564,3 +564,18 @@ def test_what_somebody_goes_to_do_is_told_in_the_past_too(theme: str, told: str)
 def test_a_story_is_called_after_what_is_done_in_it(theme: str, title: str) -> None:
     script = made(theme, [read.beat for read in beats_of(theme)], [frame("loco", "stand still", "floor", 0)])
     assert narrate(script, EMILY).title == title
+
+
+@given(stories, people, st.sets(st.integers(0, 12)))
+def test_what_the_body_lost_in_moving_is_slanted_and_nothing_else_changes(
+    script: LongScript, person: Character, lost: set[int]
+) -> None:
+    told = narrate(script, person)
+    left = told.with_unseen(lost)
+    assert (left.title, left.text, left.spans) == (told.title, told.text, told.spans)
+    seen = {at for one in told.thoughts for at in range(one.start, one.end)}
+    slanted = {at for one in left.thoughts for at in range(one.start, one.end)}
+    own = {at for one in told.spans if lost.issuperset(one.keyframes) for at in range(one.start, one.end)}
+    assert seen | own <= slanted
+    assert all(told.text[at].isspace() for at in slanted - seen - own)
+    assert all(one.end <= other.start for one, other in pairwise(left.thoughts))

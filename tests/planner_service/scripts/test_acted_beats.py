@@ -2,12 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.scripts.acted_beats import IN_ITS_PLACE, LEGEND, Shot, acted_beats, connects, planned_beats
+from planner_service.scripts.acted_beats import (
+    IN_ITS_PLACE,
+    LEGEND,
+    Shot,
+    acted_beats,
+    connects,
+    lost_in_moving,
+    planned_beats,
+)
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 
 SITS, READS, NO_SUPPER = Beat(text="sits down"), Beat(text="reads"), Beat(text="eats no supper", kind="undone")
@@ -50,6 +60,16 @@ def test_every_beat_is_acted_or_there_is_a_reason_and_shares_are_shares(beats: l
     assert all(one.why == one.beat.why for one in found.outcomes if one.beat.why)
     rows = found.to_dict()["beats"]
     assert [(row["acted"], row["stood_for"]) for row in rows] == [(one.acted, one.stood_for) for one in found.outcomes]
+
+
+@given(st.lists(BEATS, max_size=4), st.lists(SHOTS, max_size=8))
+def test_only_a_body_that_moved_loses_what_was_to_be_seen(beats: list[Beat], shots: list[Shot]) -> None:
+    shots = [replace(one, beats=tuple(beat for beat in one.beats if beat < len(beats))) for one in shots]
+    outcomes = acted_beats(beats, shots).outcomes
+    for place in lost_in_moving(beats, shots):
+        assert shots[place].beats
+        assert not any(outcomes[beat].acted for beat in shots[place].beats)
+    assert not lost_in_moving(beats, [replace(one, reached=None) for one in shots])
 
 
 @given(st.lists(BEATS, max_size=4), st.lists(SHOTS, min_size=1, max_size=8), st.data())
