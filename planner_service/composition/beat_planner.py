@@ -16,7 +16,7 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed, unshown
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.gainsaid import is_gainsaid
-from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.keyframe_writer import BY_A_WALL, EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.llm.protocol import LanguageModel, ModelError
@@ -166,7 +166,11 @@ def _besides(
     own = [one for one in own if not connects(one)] or own
     if deed is not None and not writer.reader.is_shown(read.clause, deed, own, index in writer.linked):
         return (read.text,)
-    return unshown(read.clause, {one.piece[0] for one in own}) if read.beat.kind == "deed" else ()
+    if read.beat.kind != "deed":
+        return ()
+    by = BY_A_WALL.search(read.text) if all(one.skill in (Skill.SITDOWN, Skill.LIEDOWN) for one in own) else None
+    known = unshown(read.clause, {one.piece[0] for one in own})
+    return (*known, by[0]) if by and not any(by[0] in one for one in known) else known  # seats stand where they do
 
 
 def _does_more(read: ReadBeat) -> bool:

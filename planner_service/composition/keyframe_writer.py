@@ -41,6 +41,7 @@ from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.opening_words import Kind, opening_of
 from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
@@ -61,9 +62,11 @@ EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
 """Words before another place."""
 _MOST_PLACES: Final = 3
+_AHEAD: Final = 3
+"""Beats in which the seat that is named next is looked for."""
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
-_BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
+BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
 """Where nothing is kept that could be taken."""
 _GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
 _GETS_THERE: Final = re.compile(
@@ -120,6 +123,8 @@ class KeyframeWriter:
     """Of which deed it is written."""
     _rises: bool = False
     """Whether getting up is done next."""
+    _opening: Kind | None = None
+    """The window or door that was walked to, or stood at, last."""
     _ahead: str | None = None
     """The room that is spoken of next."""
 
@@ -146,7 +151,7 @@ class KeyframeWriter:
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None:
-            self.deeds[index] = deed
+            deed = self.deeds[index] = self._on_seat_ahead(deed, read, beats[index + 1 : index + 1 + _AHEAD])
             self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
             self._try(index, read, deed, self._rises_later(index, beats))
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
@@ -203,6 +208,21 @@ class KeyframeWriter:
             deed = self.reader.deed(one.clause) if one.beat.kind == "undone" else None
             if deed is not None and not deed.row.captions:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
+
+    def _on_seat_ahead(self, deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat]) -> Deed:
+        """Who sits for it does so where the theme has them sit next: nobody changes seats for what is told before."""
+        rests = deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)
+        if not rests or deed.named or self.body.resting is not None:
+            return deed
+        told = [(one, self.reader.deed(one.clause)) for one in nexts if one.room in (None, read.room)]
+        for one, then in told:
+            if then is None or not then.named or then.skill is not Skill.SITDOWN or not self.places.has(then.pieces[0]):
+                continue
+            if one is nexts[0] and is_beside(one):  # "collapses | giggling on the rug"
+                return then
+            if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit"):
+                return replace(deed, pieces=then.pieces, named=True)
+        return deed
 
     def _rises_later(self, index: int, beats: Sequence[ReadBeat]) -> bool:
         """Whether somebody gets or sits up next: who wakes before that stays in bed."""
@@ -278,7 +298,7 @@ class KeyframeWriter:
     def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
         """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
         at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
-        at = () if _BY_A_WALL.search(read.text) else at
+        at = () if BY_A_WALL.search(read.text) else at
         stands, last = bool(_ON_FEET.search(read.text)), self._clause
         goes_on = self.body.resting is None and last is not None and last.sentence == read.clause.sentence
         if deed.row.rests and stands and at:
@@ -374,7 +394,9 @@ class KeyframeWriter:
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self.places.has(one)), "floor")
-        if last is not None and last.skill is Skill.LOCO and (last.caption, last.furniture) == (caption, piece):
+        stood, self._opening = self._opening, opening_of(Skill.LOCO, read.text)
+        same = last is not None and last.skill is Skill.LOCO and (last.caption, last.furniture) == (caption, piece)
+        if same and (stood is self._opening or self._opening is None):  # who stood still looks out of the window then
             others = [one for one in captions if one != caption]
             if not others:
                 self.body.show(index)

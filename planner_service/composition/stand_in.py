@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 from motion_backend.motion import RISINGS, Skill
@@ -10,12 +11,17 @@ from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.scripts.acted_beats import connects
-from planner_service.themes.beats import ReadBeat
+from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 
 SEATED_FOR_IT: Final = 0.7
 """Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
 GONE_FOR_IT: Final = 0.3
 """and nobody lies down or goes anywhere for what is less likely than this."""
+_FACE: Final = re.compile(
+    r"\b(?:breath|heav|let|giv|utter)\w* (?:out )?an? (?:\w+ )?(?:sigh|smile|grin|laugh|giggle|groan|moan|gasp)\b",
+    re.IGNORECASE,
+)
+"""What is done with face and voice alone."""
 _POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 
 
@@ -23,13 +29,15 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
     """Whether what a body does for a beat only stands for it, and is more than it would do where it is."""
     new = after.keyframes[len(before.keyframes) :]
     done = [one for one in new if not connects(one)] or new
+    seated = before.resting is None and bool(done) and done[-1].skill in _POSTURES
+    if seated and (is_gainsaid(read.clause, done) or read.clause.verb in EXPRESSIONS or _FACE.search(read.text)):
+        return True  # "climbs on a chair" is no sitting on it; nobody sits down for a sigh
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False
-    seated = before.resting is None and done[-1].skill in _POSTURES
     rises = before.resting is not None and (done[-1].skill not in _POSTURES or any(k.skill in RISINGS for k in new))
     if not (seated or rises or len(new) > len(done)):
         return False  # a hand, or steps, where one is
     least = SEATED_FOR_IT if rises or (seated and done[-1].skill is Skill.SITDOWN) else GONE_FOR_IT
     if max(reader.likelihood(read.clause, one) for one in done) < least:
         return True
-    return (seated or rises) and is_gainsaid(read.clause, done)
+    return rises and is_gainsaid(read.clause, done)

@@ -167,6 +167,10 @@ def _same_script(one: Keyframe, other: Keyframe) -> bool:
 
 
 def _alike(one: Keyframe, other: Keyframe) -> bool:
+    """Whether two keyframes that follow each other are one; who stood still may stand at a window for the next beat."""
+    beats = [getattr(keyframe, "beat", None) for keyframe in (one, other)]
+    if one.skill is Skill.LOCO and beats[0] != beats[1]:
+        return False
     return place_of(one) == place_of(other) and (one.skill, one.emotion, one.caption) == (
         other.skill,
         other.emotion,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from functools import cache
 
+import pytest
 from examples import tries
 from for_each import for_each
 from hypothesis import given
@@ -278,3 +279,27 @@ def test_named_furniture_is_looked_for_where_it_usually_is_and_not_in_the_room_o
     rooms = {one.furniture: one.room for one in script.keyframes}
     assert rooms["wardrobe"] == "bedroom"
     assert rooms["office chair"] != "bedroom"
+
+
+@pytest.mark.parametrize(
+    ("theme", "seats"),
+    [
+        ("She reads the letter twice. She sits down on the sofa and weeps.", ["sofa"]),
+        ("She reads a book. She opens the fridge.", ["armchair", "sofa", "chair"]),
+    ],
+)
+def test_who_sits_for_something_does_so_where_the_theme_has_them_sit_next(theme: str, seats: list[str]) -> None:
+    found = {one.furniture for one in own(planned(theme)) if one.skill in (Skill.SITDOWN, Skill.LIEDOWN)}
+    assert found
+    assert found <= {*seats}
+
+
+def test_who_stood_still_looks_out_of_the_window_in_a_moment_of_its_own() -> None:
+    stands = [one.beat for one in own(planned("She stays perfectly still. She looks out of the window."))]
+    assert stands == [0, 1]
+    assert len(own(planned("She stays perfectly still. She stands still."))) == 1
+
+
+def test_who_sits_by_a_window_is_not_told_to_be_seen_there() -> None:
+    (drinks,) = planned("She sits by the window.").beats
+    assert drinks.unshown == ("by the window",)
