@@ -16,6 +16,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.scripts.script import Beat
+from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, lemma_of, past
 from planner_service.themes.protagonist import called, hero_of
 from planner_service.themes.sentence_parser import clauses_of_text
@@ -125,7 +126,11 @@ class Retelling:
             places = [at for at in run if self.tokens[at].is_word]
             telling = [at for at in places if self.tokens[at].low not in small and not self.tokens[at].is_name]
             if free and len(telling) > 1:
-                yield range(places[0], places[-1] + 1)
+                yield range(places[0], max(at for at in places if not self._names_who(at)) + 1)
+
+    def _names_who(self, at: int) -> bool:
+        """Whether a token only says who does what follows: "at two in the morning | she"."""
+        return self.tokens[at].is_name or self.tokens[at].low in _SUBJECTS
 
     def part(self, stretch: Stretch, words: str) -> range:
         """The tokens of a stretch where some of its words stand together; none where they do not."""
@@ -311,7 +316,8 @@ def _helper(word: str, before: str) -> str:
 def _is_noun(word: str, before: str) -> bool:
     """Whether a word in -s names things: "the keys", "hands"."""
     led = before in grammar().marks | grammar().prepositions | {"no", "some"}
-    return led or lemma_of(word) in theme_words()["body"] or not is_verb(word)
+    of_body = lemma_of(word) in theme_words()["body"] and lemma_of(word) not in EXPRESSIONS  # "grins"
+    return led or of_body or not is_verb(word)
 
 
 def _is_list(told: Retelling, stretch: Stretch) -> bool:

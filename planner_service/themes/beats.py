@@ -143,7 +143,7 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
 
 
 def _read(clause: Clause, hero: str, pronoun: str, of_others: bool = False) -> ReadBeat:
-    ours = not of_others and is_hero(clause.doer, hero, pronoun)
+    ours = not of_others and (is_hero(clause.doer, hero, pronoun) or _is_it(clause, hero))
     who = "" if clause.aside or ours else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
@@ -170,6 +170,13 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool = False) -> R
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
+
+
+def _is_it(clause: Clause, hero: str) -> bool:
+    """Whether "it" is a hero that is called so, and no weather: "a robot sweeps. It dreams"."""
+    words = theme_words()
+    weather = clause.verb in words["weather"] | words["state_verbs"] | {"", "take"}
+    return clause.doer.lower() == "it" and head_of(hero).lower() in words["called_it"] and not weather
 
 
 def read_beat(beat: Beat) -> ReadBeat:

@@ -25,7 +25,7 @@ from planner_service.themes.asides import (
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import FLOATING, Token, has_verb, verb_place
+from planner_service.themes.verb_finder import FLOATING, NAMING, Token, has_verb, verb_place
 from planner_service.themes.verb_group import NEARLY, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
@@ -138,7 +138,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             parts = _sharing(_main(told[-1]), parts) if told else parts
             own = _main(parts).subject
             if own.lower() in RELATIVES and doer:
-                own = _told_last(told) or doer
+                own = _told_last(told, own.lower()) or doer
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
             )
@@ -151,10 +151,13 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     return tuple(found)
 
 
-def _told_last(told: Sequence[Sequence[Clause]]) -> str:
-    """Somebody else whom the clause before ends with: "burps the baby, | who was sick"."""
-    last = _main(told[-1]).text.rsplit(" ", 1)[-1] if told else ""
-    return f"the {last}" if is_noun(last) and " " in _main(told[-1]).text else ""
+def _told_last(told: Sequence[Sequence[Clause]], relative: str) -> str:
+    """Somebody else whom the clause before ends with: "burps the baby, | who was sick"; of "who" a person, where one is
+    named: "opens the door to the boy next door, | who waves"."""
+    words = _main(told[-1]).text.split() if told else []
+    people = [word for word in words[1:] if relative == "who" and lemma_of(word) in theme_words()["people"]]
+    last = [*words[1:][-1:], *people][-1:]
+    return f"the {last[0]}" if last and is_noun(last[0]) else ""
 
 
 def _main(parts: Sequence[Clause]) -> Clause:
@@ -449,6 +452,8 @@ def _describes(words: Sequence[str]) -> bool:
 def _starts_subject(words: Sequence[str], place: int) -> bool:
     """Whether a noun with its mark, or a name, begins there that no preposition goes before: "at last the news"."""
     before, word = words[place - 1], words[place]
+    if before.lower() in NAMING:
+        return False  # "a robot named | Bolt"
     is_start = word.lower() in grammar().marks or (word[:1].isupper() and not before[:1].isupper())
     return is_start and before.lower() not in grammar().marks | grammar().prepositions
 

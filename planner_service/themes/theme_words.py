@@ -26,6 +26,12 @@ class ThemeWords:
     """What somebody does who is quoted, and is seen doing: "“Dear John,” he writes"."""
     no_heroes: str
     """Nouns for what does things and is nobody a theme is about."""
+    weather: str
+    """Nouns and verbs for the weather."""
+    called_it: str
+    """Nouns for whom a theme may call "it"."""
+    visitors: str
+    """Nouns for people who come by, or call: a theme is seldom about them."""
     body: str
     """Parts of a person: what these do, the person does."""
     state_verbs: str
