@@ -134,9 +134,17 @@ class Retelling:
 
     def part(self, stretch: Stretch, words: str) -> range:
         """The tokens of a stretch where some of its words stand together; none where they do not."""
+        return self._words_in(stretch.start, stretch.end, words)
+
+    def lead(self, stretch: Stretch, words: str) -> range:
+        """The same of what stands before a stretch in its sentence: "before the interview | he bows"."""
+        start = max(one for one in self.starts if one <= stretch.start)
+        return self._words_in(start, stretch.start, words)
+
+    def _words_in(self, start: int, end: int, words: str) -> range:
         asked = [token.low for token in _tokens(words) if token.is_word]
-        found = next(_found(self.tokens[stretch.start : stretch.end], asked), range(0))
-        return range(stretch.start + found.start, stretch.start + found.stop) if found else found
+        found = next(_found(self.tokens[start:end], asked), range(0))
+        return range(start + found.start, start + found.stop) if found else found
 
     def end_of(self, stretch: Stretch) -> int:
         """The last token of the sentence that a stretch ends in."""

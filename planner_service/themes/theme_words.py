@@ -28,6 +28,8 @@ class ThemeWords:
     """Nouns for what does things and is nobody a theme is about."""
     weather: str
     """Nouns and verbs for the weather."""
+    told_times: str
+    """Nouns that, without a verb, tell only when it is: "laundry day"."""
     called_it: str
     """Nouns for whom a theme may call "it"."""
     visitors: str
