@@ -174,11 +174,19 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
         kind, clause = "other", replace(clause, aside=clause.subject.lower() == "they")
     alone = {"nobody", "nothing", "none"} & set(clause.lemmas) and {"but", "only"} & set(clause.lemmas)
     emotion = None if alone and not sure else emotion  # "finds nobody there, only a parcel"
+    if emotion is None and not who and _is_frightened(clause):
+        emotion = Emotion.STRESSED
     theirs = is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
     if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
+
+
+def _is_frightened(clause: Clause) -> bool:
+    """Whether a verb tells of fright, where nothing is done to a thing: "freezes", not "freezes the soup"."""
+    on = grammar().prepositions | grammar().adverbs | {"", "and"}
+    return clause.verb in theme_words()["fright_verbs"] and (*clause.lemmas[1:2], "")[0] in on
 
 
 def _is_it(clause: Clause, hero: str) -> bool:
@@ -276,9 +284,13 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             own = one.felt or mood
             moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": own})))
             continue
+        if after is not None and together and not one.sure and _is_meanwhile(after):
+            one = one.in_mood(after.felt or mood)  # "collapses | giggling"
         spoken = index > 0 and before.sure and before.beat.kind == one.beat.kind == "speech"
         if spoken:  # how it is said tells less than what is said: "“I am so happy!” she shouts"
             mood = before.felt or mood
+        elif one.clause.verb in theme_words()["calming_verbs"] and mood is Emotion.ANGRY:
+            mood = Emotion.NEUTRAL  # who shrugs is angry no more
         elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
                 mood = one.felt
@@ -286,6 +298,12 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             mood = after.felt
         moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": mood})))
     return moods
+
+
+def _is_meanwhile(one: ReadBeat) -> bool:
+    """Whether a beat tells how somebody looks who does the one before it: "sits there, | crying"."""
+    beside = one.clause.joint in ("ing", ",") and not one.clause.subject and one.text.split()[0].endswith("ing")
+    return beside and one.sure and one.felt is not None
 
 
 def rooms_in(text: str) -> tuple[str, ...]:

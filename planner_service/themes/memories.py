@@ -28,11 +28,12 @@ def recalled_in(clauses: Sequence[Clause]) -> frozenset[int]:
     last: int | None = None
     for at in sorted(range(len(clauses)), key=lambda at: (clauses[at].sentence, clauses[at].place)):
         before = clauses[last] if last is not None else None
-        same = before is not None and before.sentence == clauses[at].sentence
-        if _is_habit(clauses[at]) or (before is not None and same and _is_recalled(before, clauses[at])):
-            found.add(at)
-        elif before is not None and same and last in found and _goes_on(before, clauses[at], clauses):
-            found.add(at)
+        if before is None or before.sentence != clauses[at].sentence:
+            told = _is_habit(clauses[at])
+        else:
+            more = last in found and _goes_on(clauses[at], clauses)
+            told = more or _is_habit(clauses[at]) or _is_recalled(before, clauses[at])
+        found.update([at] if told else [])
         last = at
     return frozenset(found)
 
@@ -51,7 +52,7 @@ def _is_recalled(before: Clause, clause: Clause) -> bool:
     return before.verb in _THINKING and (clause.aside or then)
 
 
-def _goes_on(before: Clause, clause: Clause, clauses: Sequence[Clause]) -> bool:
+def _goes_on(clause: Clause, clauses: Sequence[Clause]) -> bool:
     """Whether more is remembered: "remembers how they danced | and laughed", but not "and smiles"."""
     recalling = [
         one for one in clauses if one.sentence == clause.sentence and one.verb in theme_words()["memory_verbs"]

@@ -62,6 +62,8 @@ _WHAT_IT_IS: Final = re.compile(
     r"(?<=\w):\s+((?:an?|the|his|her|their|my|some|one|two|three) [\w'’ -]{1,40})(?=\s*[.!?]|\s*$)", re.MULTILINE
 )
 """What was meant before is named: "unwraps it: a birthday cake"."""
+_AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
+"""An age behind a name: "Henrik (74) waters the plants"."""
 _DAYTIMES: Final = frozenset(
     (
         "dusk",
@@ -193,7 +195,7 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
     text = _HEADING.sub("", _BULLET.sub("", text)) or text
-    text = _WHAT_IT_IS.sub(_named_after, text)
+    text = _WHAT_IT_IS.sub(_named_after, _AGE.sub(r", \1,", text))
     parts = [part for line in _SEMI.split(text) if line.strip() for part in _segments(line)]
     parts = [_TIME.sub("", part) for part in parts]
     return [part.strip(' \t.!?,;:-–—"“”') for part in parts if re.search(r"\w", part)]

@@ -30,6 +30,10 @@ class ThemeWords:
     """Nouns and verbs for the weather."""
     told_times: str
     """Nouns that, without a verb, tell only when it is: "laundry day"."""
+    fright_verbs: str
+    """What somebody does who is afraid, where it is done to nothing."""
+    calming_verbs: str
+    """What somebody does whose anger is over."""
     called_it: str
     """Nouns for whom a theme may call "it"."""
     visitors: str

@@ -156,6 +156,12 @@ def test_one_person_is_played_and_others_are_named(theme: str, who: list[str]) -
         ("He eats. He rests on the sofa.", ["neutral", "relaxed"]),
         ("A tired student studies.", ["tired"]),
         ("He laughs and dances.", ["happy", "happy"]),
+        ("Yusuf freezes, turns off the lamp and breathes a sigh of relief.", ["stressed", "stressed", "relaxed"]),
+        ("He freezes the soup. He hid behind the sofa.", ["neutral", "stressed"]),
+        ("Priya curses, paces, then shrugs and eats.", ["angry", "angry", "neutral", "neutral"]),
+        ("He cries. He shrugs.", ["sad", "sad"]),
+        ("Mia collapses giggling on the rug.", ["happy", "happy"]),
+        ("He sits on the bed, sobbing, and cries.", ["sad", "sad", "sad"]),
         ("He shouts, hides from her mother and slams the door.", ["angry", "angry", "angry"]),
     ],
 )
