@@ -35,6 +35,11 @@ _TEENAGE: Final = re.compile(
     r"(?:^|;)(?:(?!\b(?:of|with|for|to|and|whose)\b)[^;])*\b(?:teen(?:age[dr]?)?|adolescent|high[- ]schooler)\b",
     re.IGNORECASE,
 )
+_TOLD_AGE: Final = (
+    r"\b{who}(?P<led>,|\s*\(|,?\s+who\s+(?:is|was|(?:has\s+|had\s+)?(?:just\s+)?turned)"
+    r"|\s+(?:has\s+|had\s+)?(?:just\s+)?turned)\s*({number})(?=\s*[,.;)]|\s+(?:today|yesterday|years|and|last)\b|$)"
+)
+"""An age beside a name: "Henrik, 74, …", "Ida, who is eight, …"."""
 _RETIRED: Final = re.compile(r"\b(?:retired|former|ex)\b", re.IGNORECASE)
 """Whose work is over wears nothing for it."""
 _LEFT_ALONE: Final = re.compile(
@@ -77,6 +82,10 @@ class _CastWords:
     """data/cast_words.toml."""
 
     numbers: Mapping[str, int]
+    school: tuple[str, ...]
+    """What is had or done by who goes to school."""
+    schooled: tuple[str, ...]
+    """Of whom it may be instead, where one of these is named."""
     person: tuple[_PersonWords, ...]
     occasion: tuple[_OccasionWords, ...]
 
@@ -143,6 +152,8 @@ def cast_for(theme: str, character: Character, seed: int, years: int | None = No
     known, about = cast(), description_of(theme, character)
     read = _read(about)
     years = _years(about) if years is None else years
+    if years is None and not {"age", "outfit"} & set(read) and _goes_to_school(theme):
+        years = TEENS
     if years is not None:
         read["age"] = next(name for name, group in known.ages.items() if years <= group.years_max)
     given = {name: value for name in GIVEN if (value := getattr(character, name))}
@@ -199,6 +210,7 @@ def description_of(theme: str, character: Character) -> str:
     for subject in sorted(subjects):
         plain = re.escape(subject)
         found += [one["told"] for one in re.finditer(rf"\b{plain}{_IS}", theme, re.IGNORECASE)]
+        found += [one[2] for one in re.finditer(_TOLD_AGE.format(who=plain, number=_number()), theme, re.IGNORECASE)]
         found += [one[1] for one in re.finditer(rf"\b{plain},\s+((?:an?|the|my|our|aged)\s[^,.;!?]+)", theme)]
     found += [one["told"] or one["first"] for one in _AS.finditer(theme)]
     found += ["widow"] if _LEFT_ALONE.search(theme) else []
@@ -219,7 +231,7 @@ def _read(about: str) -> dict[str, str]:
 
 def _years(about: str) -> int | None:
     """How old somebody is said to be."""
-    number = rf"(\d{{1,3}}|{'|'.join(_words().numbers)})"
+    number = f"({_number()})"
     forms = (
         rf"\b{number}[\s-]years?[\s-]old\b",
         rf"\b(?:boy|girl|child|kid|man|woman)\s+of\s+{number}\b",
@@ -231,6 +243,15 @@ def _years(about: str) -> int | None:
             word = match[1].lower()
             return min(int(word) if word.isdigit() else _words().numbers[word], 120)
     return TEENS if _TEENAGE.search(about) else None
+
+
+def _number() -> str:
+    return rf"\d{{1,3}}|{'|'.join(_words().numbers)}"
+
+
+def _goes_to_school(theme: str) -> bool:
+    """Whether a theme's person seems to: of nobody else the homework may be."""
+    return _says(theme, _words().school) and not _says(theme, _words().schooled)
 
 
 def _says(text: str, words: Sequence[str]) -> bool:

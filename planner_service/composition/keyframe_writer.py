@@ -54,6 +54,7 @@ NOT_ACTED: Final = {
 }
 """Why beats of these kinds are not acted."""
 SPOKEN_OF: Final = "it is only spoken of"
+NO_DEED: Final = "it is no deed"
 UNSHOWN: Final = "none of the captions shows it"
 HELD: Final = "the hands are empty"
 """Why what is only held, or is in somebody's own clothes, is not acted."""
@@ -79,6 +80,13 @@ _TAKEN: Final = DeedRow(
 )
 """What is eaten or drunk on one's feet is taken from where it is."""
 _STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
+
+
+def _not_acted(read: ReadBeat) -> str:
+    """Why a beat of a kind that is not acted is not."""
+    if read.clause.aside and read.beat.kind != "memory":
+        return SPOKEN_OF
+    return NO_DEED if read.beat.kind == "other" and not read.beat.who else NOT_ACTED[read.beat.kind]
 
 
 @dataclass(frozen=True)
@@ -147,7 +155,7 @@ class KeyframeWriter:
         nexts = (one.room or room_of(one.clause) for one in beats[index + 1 :])
         self._ahead = next(filter(None, nexts), None)
         if beat.kind in NOT_ACTED:
-            self.why[index] = SPOKEN_OF if read.clause.aside else NOT_ACTED[beat.kind]
+            self.why[index] = _not_acted(read)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None:

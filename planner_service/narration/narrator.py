@@ -181,7 +181,7 @@ class _Teller:
                 found |= {*range(stretch.start, stretch.end)}
                 continue
             for detail in beat.unshown:
-                found |= {*self.told.part(stretch, detail)}
+                found |= {*(self.told.part(stretch, detail) or self.told.lead(stretch, detail))}
         return found
 
 

@@ -16,6 +16,7 @@ from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.scripts.script import Beat
+from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, lemma_of, past
 from planner_service.themes.protagonist import called, hero_of
 from planner_service.themes.sentence_parser import clauses_of_text
@@ -125,13 +126,25 @@ class Retelling:
             places = [at for at in run if self.tokens[at].is_word]
             telling = [at for at in places if self.tokens[at].low not in small and not self.tokens[at].is_name]
             if free and len(telling) > 1:
-                yield range(places[0], places[-1] + 1)
+                yield range(places[0], max(at for at in places if not self._names_who(at)) + 1)
+
+    def _names_who(self, at: int) -> bool:
+        """Whether a token only says who does what follows: "at two in the morning | she"."""
+        return self.tokens[at].is_name or self.tokens[at].low in _SUBJECTS
 
     def part(self, stretch: Stretch, words: str) -> range:
         """The tokens of a stretch where some of its words stand together; none where they do not."""
+        return self._words_in(stretch.start, stretch.end, words)
+
+    def lead(self, stretch: Stretch, words: str) -> range:
+        """The same of what stands before a stretch in its sentence: "before the interview | he bows"."""
+        start = max(one for one in self.starts if one <= stretch.start)
+        return self._words_in(start, stretch.start, words)
+
+    def _words_in(self, start: int, end: int, words: str) -> range:
         asked = [token.low for token in _tokens(words) if token.is_word]
-        found = next(_found(self.tokens[stretch.start : stretch.end], asked), range(0))
-        return range(stretch.start + found.start, stretch.start + found.stop) if found else found
+        found = next(_found(self.tokens[start:end], asked), range(0))
+        return range(start + found.start, start + found.stop) if found else found
 
     def end_of(self, stretch: Stretch) -> int:
         """The last token of the sentence that a stretch ends in."""
@@ -311,7 +324,8 @@ def _helper(word: str, before: str) -> str:
 def _is_noun(word: str, before: str) -> bool:
     """Whether a word in -s names things: "the keys", "hands"."""
     led = before in grammar().marks | grammar().prepositions | {"no", "some"}
-    return led or lemma_of(word) in theme_words()["body"] or not is_verb(word)
+    of_body = lemma_of(word) in theme_words()["body"] and lemma_of(word) not in EXPRESSIONS  # "grins"
+    return led or of_body or not is_verb(word)
 
 
 def _is_list(told: Retelling, stretch: Stretch) -> bool:

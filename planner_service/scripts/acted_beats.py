@@ -25,7 +25,8 @@ LEGEND: Final = (
 )
 """What is meant by the words of `ActedBeats.lines`."""
 RESTS: Final = re.compile(
-    r"(?:\w+ly )?(?:sits?|sat|lies|lie|lay|settles?|sinks?|flops?|drops?|slumps?|curls?|perch(?:es)?|collapses?|rests?"
+    r"(?:(?:takes?|took|has|have|had) )?an? (?:\w+ )?(?:nap|sleep|doze|snooze|siesta|lie-down|rest)\b"
+    r"|(?:\w+ly )?(?:sits?|sat|lies|lie|lay|settles?|sinks?|flops?|drops?|slumps?|curls?|perch(?:es)?|collapses?|rests?"
     r"|stays?|sleeps?|slept|naps?|dozes?|nods? off|f(?:a|e)lls? asleep|goes to (?:sleep|bed)"
     r"|takes? (?:a|his|her|their|the) (?:seat|place))\b"
     r"(?!.*\b(?:and|with|to|hands?|arms?|elbows?|chin|head|\w{2,}ing)\b)",
@@ -110,12 +111,12 @@ class ActedBeats:
     @property
     def acted(self) -> int:
         """How many of those are acted."""
-        return sum(one.acted for one in self.outcomes)
+        return sum(one.acted and one.beat.asked for one in self.outcomes)
 
     @property
     def stood_for(self) -> int:
         """For how many others of those something stands."""
-        return sum(one.stood_for for one in self.outcomes)
+        return sum(one.stood_for and one.beat.asked for one in self.outcomes)
 
     @property
     def missing(self) -> tuple[Outcome, ...]:
@@ -125,7 +126,12 @@ class ActedBeats:
     @property
     def undone(self) -> tuple[Outcome, ...]:
         """Those that are left undone, as asked."""
-        return tuple(one for one in self.outcomes if not one.beat.asked)
+        return tuple(one for one in self.outcomes if one.beat.kind == "undone")
+
+    @property
+    def told(self) -> tuple[Outcome, ...]:
+        """Those that are no deeds, or are only spoken of: nobody is asked to do them."""
+        return tuple(one for one in self.outcomes if not one.beat.asked and one.beat.kind != "undone")
 
     def lines(self) -> list[str]:
         """In words: how many are acted, the missing ones and why, what is left undone, and what these words mean where
@@ -148,6 +154,7 @@ class ActedBeats:
                 for one in self.outcomes
                 if one.acted and one.unshown
             ),
+            *(f"told, not acted: {one.beat.text} ({one.why})" for one in self.told if one.why and not one.stood_for),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
             *([] if plain else [LEGEND]),
         ]
@@ -225,7 +232,7 @@ def _concerns(words: str, beat: Beat) -> bool:
 
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:
     """Why a beat is not acted; empty where it is."""
-    if beat.why or not beat.asked:
+    if beat.why or beat.kind == "undone":
         return beat.why or UNDONE
     own = [shot for shot in shots if index in shot.beats]
     if not own and beat.kind == "feeling" and beat.emotion is not Emotion.NEUTRAL:  # in what is done in that mood

@@ -158,7 +158,8 @@ class Retrieved(BaseModel):
 
 BeatKind = Literal["deed", "feeling", "undone", "memory", "other", "speech"]
 """What a beat is: something done at home now · how somebody feels · what is not done, or only wished for · what
-happened before and is only thought of · what somebody else or the world does · what is said."""
+happened before and is only thought of · what somebody else or the world does, or, of nobody, what is only told: "it is
+Sunday" · what is said."""
 
 
 class Beat(BaseModel):
@@ -191,8 +192,8 @@ class Beat(BaseModel):
 
     @property
     def asked(self) -> bool:
-        """Whether the theme says that it happens: all but what is left undone."""
-        return self.kind != "undone"
+        """Whether the theme asks for it: all but what is left undone, and what is told and nobody does."""
+        return self.kind != "undone" and (self.kind != "other" or bool(self.who))
 
 
 Pronouns = Literal["he", "she", "they"]

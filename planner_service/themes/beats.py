@@ -9,9 +9,12 @@ from dataclasses import dataclass, replace
 from typing import Final
 
 from motion_backend.motion import Emotion
+from planner_service.scripts.acted_beats import RESTS
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.lexicon import grammar, is_known_word, lemma_of
+from planner_service.themes.memories import RECALLING, recalled_in
+from planner_service.themes.no_deeds import tells_no_deed
 from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -65,8 +68,6 @@ EXPRESSIONS: Final = {
 }
 """Verbs that say how somebody feels who does it."""
 _CRIES: Final = ("scream", "shriek")
-_REMEMBERED: Final = frozenset(("when", "how", "that", "where"))
-"""Joints after which it is told what somebody remembers."""
 _LAUGHS: Final = ("laugh", "giggle", "chuckle", "cackle")
 _TEARS: Final = re.compile(r"\b(?:tears?|cr(?:y|ies|ied|ying)|weeps?|wept|weeping|aches?|hurts?)\b", re.IGNORECASE)
 """Who laughs till these is happy."""
@@ -136,14 +137,20 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     """What clauses say happens to whom they are about."""
     hero = hero_of(clauses)
     pronoun = called(clauses, hero)
-    told = (clause for clause in clauses if clause.verb or clause.text.lower() != hero.lower())
-    return tuple(
-        _moods([_read(clause, hero, pronoun, tells_of_others(clause, clauses, hero, pronoun)) for clause in told])
-    )
+    recalled = recalled_in(clauses)
+    read = [
+        _read(clause, hero, pronoun, tells_of_others(clause, clauses, hero, pronoun), at in recalled)
+        for at, clause in enumerate(clauses)
+        if clause.verb or clause.text.lower() != hero.lower()
+    ]
+    return tuple(_moods(read))
 
 
-def _read(clause: Clause, hero: str, pronoun: str, of_others: bool = False) -> ReadBeat:
-    ours = not of_others and is_hero(clause.doer, hero, pronoun)
+def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bool) -> ReadBeat:
+    if not clause.verb and (deed := RESTS.match(clause.text)):  # "then a nap"
+        verb = lemma_of(deed[0].split()[-1])
+        clause = replace(clause, verb=verb, lemmas=(verb, *clause.lemmas[len(deed[0].split()) :]))
+    ours = not of_others and (is_hero(clause.doer, hero, pronoun) or _is_it(clause, hero))
     who = "" if clause.aside or ours else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())
     text = f"{who} {clause.text}" if led else clause.text
@@ -153,7 +160,7 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool = False) -> R
         text = clause.text
     quotes = iter(clause.quotes)
     text = _QUOTED.sub(lambda _: f"“{next(quotes, '')}”", text)
-    kind = _kind(clause, who)
+    kind = "memory" if recalled else _kind(clause, who)
     said = f"it {clause.text}" if clause.subject.lower() == "it" else clause.text  # "it is late" is no hurry
     emotion, sure = _emotion(said if clause.verb else text)
     if not sure and clause.subject:
@@ -163,13 +170,30 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool = False) -> R
     if (laughs or not sure) and not who and (shown := EXPRESSIONS.get(clause.verb)):
         raves = clause.verb in _CRIES and clause.lemmas[1:2] == ("at",)  # fright is at nobody
         emotion, sure = Emotion.ANGRY if raves else shown, True
+    if (kind == "deed" or (kind == "feeling" and not sure)) and tells_no_deed(clause):
+        kind, clause = "other", replace(clause, aside=clause.subject.lower() == "they")
     alone = {"nobody", "nothing", "none"} & set(clause.lemmas) and {"but", "only"} & set(clause.lemmas)
     emotion = None if alone and not sure else emotion  # "finds nobody there, only a parcel"
+    if emotion is None and not who and _is_frightened(clause):
+        emotion = Emotion.STRESSED
     theirs = is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
     if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
+
+
+def _is_frightened(clause: Clause) -> bool:
+    """Whether a verb tells of fright, where nothing is done to a thing: "freezes", not "freezes the soup"."""
+    on = grammar().prepositions | grammar().adverbs | {"", "and"}
+    return clause.verb in theme_words()["fright_verbs"] and (*clause.lemmas[1:2], "")[0] in on
+
+
+def _is_it(clause: Clause, hero: str) -> bool:
+    """Whether "it" is a hero that is called so, and no weather: "a robot sweeps. It dreams"."""
+    words = theme_words()
+    weather = clause.verb in words["weather"] | words["state_verbs"] | {"", "take"}
+    return clause.doer.lower() == "it" and head_of(hero).lower() in words["called_it"] and not weather
 
 
 def read_beat(beat: Beat) -> ReadBeat:
@@ -256,13 +280,17 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
         after = read[index + 1] if index + 1 < len(read) else None
         together = after is not None and after.clause.sentence == one.clause.sentence
         before = read[index - 1] if index else one
-        if one.beat.kind == "memory" or (one.clause.sentence in recalled and one.clause.joint in _REMEMBERED):
+        if one.beat.kind == "memory" or (one.clause.sentence in recalled and one.clause.joint in RECALLING):
             own = one.felt or mood
             moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": own})))
             continue
+        if after is not None and together and not one.sure and _is_meanwhile(after):
+            one = one.in_mood(after.felt or mood)  # "collapses | giggling"
         spoken = index > 0 and before.sure and before.beat.kind == one.beat.kind == "speech"
         if spoken:  # how it is said tells less than what is said: "“I am so happy!” she shouts"
             mood = before.felt or mood
+        elif one.clause.verb in theme_words()["calming_verbs"] and mood is Emotion.ANGRY:
+            mood = Emotion.NEUTRAL  # who shrugs is angry no more
         elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
                 mood = one.felt
@@ -270,6 +298,12 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             mood = after.felt
         moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": mood})))
     return moods
+
+
+def _is_meanwhile(one: ReadBeat) -> bool:
+    """Whether a beat tells how somebody looks who does the one before it: "sits there, | crying"."""
+    beside = one.clause.joint in ("ing", ",") and not one.clause.subject and one.text.split()[0].endswith("ing")
+    return beside and one.sure and one.felt is not None
 
 
 def rooms_in(text: str) -> tuple[str, ...]:

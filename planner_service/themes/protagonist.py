@@ -17,7 +17,7 @@ from planner_service.themes.lexicon import grammar, is_third_person, is_verb, ki
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
-from planner_service.themes.verb_finder import is_plural, tokens_of
+from planner_service.themes.verb_finder import NAMING, is_plural, tokens_of
 from scene_graphs.furniture import is_known
 
 _PRONOUN: Final = re.compile(r"\b(?:(?P<she>she|her|herself)|(?P<he>he|him|his|himself))\b", re.IGNORECASE)
@@ -37,6 +37,7 @@ _ASIDE: Final = frozenset(("while", "until", "when", "after", "before", "because
 """Joints of clauses that tell more often than others of somebody else."""
 _MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing"))
 """What joins main clauses: whom a theme is about does what these tell."""
+_OWNED: Final = re.compile(r"^(?P<owner>.*)['’]s (?=\w)")
 _FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
 _SUBJECTS: Final = frozenset(("he", "she", "they", "who"))
 
@@ -76,7 +77,11 @@ def _called_as(hero: str, pronoun: str) -> str:
 
 
 def _name_among(words: Sequence[str]) -> str:
-    """The name among the words of a subject, with its title: "Mrs. Hill" of "old Mrs. Hill"."""
+    """The name among the words of a subject, with its title: "Mrs. Hill" of "old Mrs. Hill", "Bolt" of "a robot named
+    Bolt"."""
+    told = next((at for at, word in enumerate(words) if word.lower() in NAMING), len(words))
+    if told + 1 < len(words):
+        return " ".join(takewhile(lambda one: one[:1].isupper(), words[told + 1 :]))
     for at, word in enumerate(words[:-1]):
         if _is_title(word) and words[at + 1][:1].isupper():
             return " ".join([word, *takewhile(lambda one: one[:1].isupper(), words[at + 1 :])])
@@ -92,6 +97,8 @@ def _noun_as_told(words: Sequence[str]) -> str:
     first, *rest = noun[0].lower(), *noun[1:]
     if first in ("my", "our"):
         return " ".join([first, *rest])
+    if rest and noun[0].endswith(("'s", "’s")):
+        return " ".join(noun)
     if first in ARTICLES | OWNERS | {"one", "some", "this", "that"}:
         return " ".join(["the", *rest])
     is_called = not rest and pronouns_of(first)  # "Grandma knits"
@@ -119,12 +126,14 @@ def _named_beside(theme: str, clauses: Sequence[Clause], pronoun: str) -> str:
 def is_name(word: str) -> bool:
     """Whether a word is a name: one that we know, or one with a capital that no dictionary has."""
     low = word.lower()
-    return word[:1].isupper() and (low in _pronouns_of_names() or not (kinds_of(low) or low in _not_names()))
+    known = kinds_of(low) or not _not_names().isdisjoint((low, low.removesuffix("s")))  # "Mondays"
+    return word[:1].isupper() and (low in _pronouns_of_names() or not known)
 
 
 @lru_cache(maxsize=2_000)
 def pronouns_of(subject: str) -> str:
     """ "he" or "she" for a person whose name or noun tells: "Anna", "the old man", "Mrs. Hill"; else ""."""
+    subject = _OWNED.sub("", subject) if _is_somebodys(subject) else subject  # "Tom's mother" is she
     words = re.findall(r"[^\W\d_]+", subject.lower())
     known = (word if word in ("he", "she") else _TITLES.get(word) or _pronouns_of_names().get(word) for word in words)
     told = next((pronouns for pronouns in known if pronouns), "") or _pronouns_by(_KINDS, subject)
@@ -188,22 +197,62 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         return "you"
     people = [clause for clause in told if is_person(clause.subject)]
     pronoun = _told_most(clauses)
-    deeds = Counter(one.doer for one in clauses if not (one.aside or (one.denied and not one.unable)))
+    done = (one for one in clauses if not (one.aside or one.joint == "to" or (one.denied and not one.unable)))
+    deeds = Counter(one.doer for one in done)
     first = min(((one.sentence, one.place) for one in people if _stands_for(one.subject)), default=(len(clauses), 0))
     nouns = [one for one in people if not _stands_for(one.subject)
              and ((one.sentence, one.place) < first or is_name(one.subject.split()[0]))]  # fmt: skip
+    # not "the doctor having gone"
+    nouns = [one for one in nouns if not one.absolute or _has_name(one.subject)] or nouns
     nouns = [one for one in nouns if pronouns_of(one.subject) in ("", pronoun or pronouns_of(one.subject))] or nouns
+    nouns = _without_visitors(nouns, deeds)
     nouns = [] if pronoun and all(_is_plural(one.subject) and one.joint in _ASIDE for one in nouns) else nouns
     if nouns:
-        return max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4)).subject
+        hero = max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4)).subject
+        return _owner_of(hero) if pronoun and pronouns_of(hero) not in ("", pronoun) else hero
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
     living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
-    people.sort(key=lambda one: (bool(pronoun) and _is_plural(one.subject), one.sentence, one.place))
+    people.sort(key=lambda one: (bool(pronoun) and _is_several(one.subject), one.sentence, one.place))
     # Whom no list knows does most: "Rex, soft as butter, comes home, kneels to tickle the puppy".
     busy = [who for who, times in deeds.most_common() if times > 1 and who.istitle() and _may_live(who)]
     return next(iter([*living, *(one.subject for one in people), *(who for who in busy if " " not in who)]), "")
+
+
+def _without_visitors(people: Sequence[Clause], deeds: Counter[str]) -> list[Clause]:
+    """Those that do things, without whoever only comes by, where somebody with a name does as much: not "the boy next
+    door", who returns the drill, but Anselm, who thanks him."""
+    named = [deeds[one.subject] for one in people if not _comes_by(one.subject) and _has_name(one.subject)]
+    most = max(named, default=0)
+    kept = [one for one in people if not _comes_by(one.subject) or deeds[one.subject] > most]
+    return kept if named else list(people)
+
+
+def _is_somebodys(subject: str) -> bool:
+    """Whether it is somebody who is called after whose they are: "Tom's mother", not "Tom's voice"."""
+    head = head_of(subject).lower()
+    return _OWNED.match(subject) is not None and not theme_words()["people"].isdisjoint((head, lemma_of(head)))
+
+
+def _owner_of(subject: str) -> str:
+    """Whose somebody is, who is not the one that pronouns tell of: "Mr Novak" of "Mr Novak's wife is away. He reads";
+    somebody as they are called where it is nobody's."""
+    owned = _OWNED.match(subject)
+    return owned["owner"] if owned and _is_somebodys(subject) and is_person(owned["owner"]) else subject
+
+
+def _comes_by(subject: str) -> bool:
+    """Whether somebody is called after whose they are, or what brings them: "her mother", "a courier"."""
+    words = [token.low for token in tokens_of(subject)]
+    head, near = head_of(subject).lower(), " ".join(words)
+    owned = words[0] in OWNERS or any(word.endswith(("'s", "’s")) for word in words)
+    return owned or head in theme_words()["visitors"] or near.endswith(("next door", "upstairs", "downstairs"))
+
+
+def _has_name(subject: str) -> bool:
+    words = [token.text for token in tokens_of(subject)]
+    return bool(_name_among(words))
 
 
 def _told_most(clauses: Sequence[Clause]) -> str:
@@ -271,6 +320,10 @@ def _is_plural(subject: str) -> bool:
     return is_plural(head_of(subject).lower())
 
 
+def _is_several(subject: str) -> bool:
+    return subject.lower() == "they" or _is_plural(subject)
+
+
 def is_person(subject: str) -> bool:
     """Whether words may name a person: a pronoun, a name, or a noun for people."""
     words = [token.text for token in tokens_of(subject)]
@@ -306,7 +359,8 @@ def names_somebody(clause: Clause) -> bool:
 def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     """Whether a subject is whom the theme is about, whom it calls by a pronoun. Nobody named: it goes on with who it
     was about."""
-    if not subject or subject.lower() == hero.lower():
+    name = _name_among([token.text for token in tokens_of(hero)])
+    if not subject or subject.lower() in (hero.lower(), name.lower()):
         return True
     if subject.lower().endswith(("both of them", "all of them", "two of them", "both of us")):
         return True
@@ -331,13 +385,15 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
 
 
 def tells_of_others(clause: Clause, clauses: Sequence[Clause], hero: str, pronoun: str) -> bool:
-    """Whether the "they" of a clause are several people named before it, and not whom a theme calls he or she."""
+    """Whether the "they" of a clause are several people named before it, and not whom a theme calls he or she; or
+    nobody has been named: "before they arrive he sets the table"."""
     if clause.doer.lower() != "they" or pronoun not in ("he", "she"):
         return False
     before = [one for one in clauses if (one.sentence, one.place) < (clause.sentence, clause.place)]
     people = theme_words()["people"]
     words = [token.low for one in before for token in tokens_of(f"{one.subject} {one.text}")]
     several = any(lemma_of(word) in people and lemma_of(word) != word for word in words)
+    several |= not before and clause.joint in _ASIDE
     return several and not re.search(r"\band\b", hero)
 
 
@@ -345,7 +401,7 @@ def head_of(subject: str) -> str:
     """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
     words: list[str] = []
     for token in tokens_of(subject):
-        stops = grammar().prepositions | grammar().adverbs | {"of", "who", "and", ","}
+        stops = grammar().prepositions | grammar().adverbs | NAMING | {"of", "who", "and", ","}
         if words and token.low in stops:
             break
         words.append(token.text)

@@ -25,7 +25,7 @@ from planner_service.themes.asides import (
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import FLOATING, Token, has_verb, verb_place
+from planner_service.themes.verb_finder import FLOATING, NAMING, Token, has_verb, verb_place
 from planner_service.themes.verb_group import NEARLY, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
@@ -62,6 +62,8 @@ _WHAT_IT_IS: Final = re.compile(
     r"(?<=\w):\s+((?:an?|the|his|her|their|my|some|one|two|three) [\w'’ -]{1,40})(?=\s*[.!?]|\s*$)", re.MULTILINE
 )
 """What was meant before is named: "unwraps it: a birthday cake"."""
+_AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
+"""An age behind a name: "Henrik (74) waters the plants"."""
 _DAYTIMES: Final = frozenset(
     (
         "dusk",
@@ -138,7 +140,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             parts = _sharing(_main(told[-1]), parts) if told else parts
             own = _main(parts).subject
             if own.lower() in RELATIVES and doer:
-                own = _told_last(told) or doer
+                own = _told_last(told, own.lower()) or doer
             told.append(
                 [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
             )
@@ -151,10 +153,13 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     return tuple(found)
 
 
-def _told_last(told: Sequence[Sequence[Clause]]) -> str:
-    """Somebody else whom the clause before ends with: "burps the baby, | who was sick"."""
-    last = _main(told[-1]).text.rsplit(" ", 1)[-1] if told else ""
-    return f"the {last}" if is_noun(last) and " " in _main(told[-1]).text else ""
+def _told_last(told: Sequence[Sequence[Clause]], relative: str) -> str:
+    """Somebody else whom the clause before ends with: "burps the baby, | who was sick"; of "who" a person, where one is
+    named: "opens the door to the boy next door, | who waves"."""
+    words = _main(told[-1]).text.split() if told else []
+    people = [word for word in words[1:] if relative == "who" and lemma_of(word) in theme_words()["people"]]
+    last = [*words[1:][-1:], *people][-1:]
+    return f"the {last[0]}" if last and is_noun(last[0]) else ""
 
 
 def _main(parts: Sequence[Clause]) -> Clause:
@@ -190,7 +195,7 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
     text = _HEADING.sub("", _BULLET.sub("", text)) or text
-    text = _WHAT_IT_IS.sub(_named_after, text)
+    text = _WHAT_IT_IS.sub(_named_after, _AGE.sub(r", \1,", text))
     parts = [part for line in _SEMI.split(text) if line.strip() for part in _segments(line)]
     parts = [_TIME.sub("", part) for part in parts]
     return [part.strip(' \t.!?,;:-–—"“”') for part in parts if re.search(r"\w", part)]
@@ -449,6 +454,8 @@ def _describes(words: Sequence[str]) -> bool:
 def _starts_subject(words: Sequence[str], place: int) -> bool:
     """Whether a noun with its mark, or a name, begins there that no preposition goes before: "at last the news"."""
     before, word = words[place - 1], words[place]
+    if before.lower() in NAMING:
+        return False  # "a robot named | Bolt"
     is_start = word.lower() in grammar().marks or (word[:1].isupper() and not before[:1].isupper())
     return is_start and before.lower() not in grammar().marks | grammar().prepositions
 

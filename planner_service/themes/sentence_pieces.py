@@ -24,6 +24,8 @@ from planner_service.themes.verb_finder import Token, is_adverb, names, plain, t
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
 """What does things in verbs' base forms."""
+_TITLED: Final = theme_words()["people"]
+"""What a name may follow that it belongs to: "the nurse Anna", "my friend Bo"."""
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
@@ -163,7 +165,16 @@ def _clause_follows(rest: Sequence[Token]) -> bool:
     end = next((i for i, token in enumerate(rest) if token.text == "," or token.low in ("and", "but")), len(rest))
     head = list(rest[: min(end, 6)])
     place = verb_place(head)
-    return place is not None and place > 0
+    return place is not None and place > 0 and not _is_when(head[:place])
+
+
+def _is_when(lead: Sequence[Token]) -> bool:
+    """Whether words before a verb are a noun and then somebody else, who does it: "before the interview | Tomasz bows"
+    tells when, and no clause."""
+    doer = next((at for at, one in enumerate(lead) if at and (one.low in HEROES or one.text[:1].isupper())), 0)
+    before = lead[doer - 1].low if doer else ""
+    leads = is_adjective(before) or is_adverb(before) or before in _TITLED  # "the tired | Anna"
+    return is_noun(before) and lead[0].text[:1].islower() and not leads
 
 
 def _whole(pieces: list[Piece]) -> list[Piece]:

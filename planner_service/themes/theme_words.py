@@ -26,6 +26,18 @@ class ThemeWords:
     """What somebody does who is quoted, and is seen doing: "“Dear John,” he writes"."""
     no_heroes: str
     """Nouns for what does things and is nobody a theme is about."""
+    weather: str
+    """Nouns and verbs for the weather."""
+    told_times: str
+    """Nouns that, without a verb, tell only when it is: "laundry day"."""
+    fright_verbs: str
+    """What somebody does who is afraid, where it is done to nothing."""
+    calming_verbs: str
+    """What somebody does whose anger is over."""
+    called_it: str
+    """Nouns for whom a theme may call "it"."""
+    visitors: str
+    """Nouns for people who come by, or call: a theme is seldom about them."""
     body: str
     """Parts of a person: what these do, the person does."""
     state_verbs: str

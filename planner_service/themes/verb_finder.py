@@ -65,6 +65,9 @@ FLOATING: Final = frozenset(("all", "both", "each"))
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
 _FEWEST_SAYING: Final = 2
 """Words of a name and what its bearer does."""
+NAMING: Final = frozenset(("named", "called", "nicknamed"))
+"""What stands between a noun and the name of whom it means."""
+_ONE_OF: Final = frozenset(("a", "an", "one", "some", "this"))
 _ARTICLES: Final = frozenset(("the", "a", "an"))
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
 
@@ -182,6 +185,8 @@ def is_adverb(word: str) -> bool:
 def _acts(tokens: Sequence[Token], place: int) -> bool:
     """Whether the word there acts as a verb, going by its form and the words about it."""
     word, base = tokens[place].low, verb_of(tokens[place].text)
+    if calls(tokens, place):
+        return False
     if not base or [token.low for token in tokens[place + 1 : place + 3]] == ["in", "hand"]:
         return False  # "phone in hand"
     at = place - 1
@@ -214,6 +219,19 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         led = before in grammar().with_gerund or tokens[0].low == "instead"
         return led or (before not in grammar().prepositions and not is_noun(word))
     return before not in grammar().prepositions and _follows(tokens, at, place, base)
+
+
+def calls(tokens: Sequence[Token], place: int) -> bool:
+    """Whether a word there only tells the name of whom the noun before it means: "a robot | named Bolt | sweeps"."""
+    if tokens[place].low not in NAMING or not place or not is_noun(tokens[place - 1].low):
+        return False
+    end = place + 1
+    while end < len(tokens) and tokens[end].text[:1].isupper():
+        end += 1
+    led = any(token.low in _ONE_OF for token in tokens[:place]) and tokens[place - 1].text[:1].islower()
+    after = tokens[end].low if end < len(tokens) else ""
+    goes_on = after not in {"", "and", "but"} | grammar().prepositions  # "a friend called Anna and told her"
+    return end > place + 1 and led and (goes_on or tokens[place].low != "called")
 
 
 def _orders(tokens: Sequence[Token], place: int) -> bool:

@@ -58,8 +58,10 @@ export interface Keyframe {
 /** One thing that the theme says, and what became of it. */
 export interface Beat {
   readonly text: string;
-  /** "undone" for what the theme says is not done. */
+  /** "undone" for what the theme says is not done; "other" of nobody for what is told and is no deed. */
   readonly kind: string;
+  /** Who does it, where it is somebody else. */
+  readonly who: string;
   readonly emotion: Emotion;
   /** As planned, while nothing is moved. */
   readonly acted: boolean;

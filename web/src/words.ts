@@ -75,9 +75,9 @@ export function takeWords({ take, derived_from }: Pick<Story, "take" | "derived_
   return take ? `Take ${take}` : "A take";
 }
 
-/** "6 of 7 beats of your theme are acted."; of what is asked for, since what is to be left undone is not acted. */
+/** "6 of 7 beats of your theme are acted."; of what is asked for: not of what is to be left undone, nor of what is told and nobody does. */
 export function beatsWords(beats: readonly Beat[]): string {
-  const asked = beats.filter((beat) => beat.kind !== "undone");
+  const asked = beats.filter((beat) => beat.kind !== "undone" && (beat.kind !== "other" || beat.who));
   const stoodFor = asked.filter((beat) => beat.stood_for).length;
   const more = stoodFor ? `, something stands for ${stoodFor} more` : "";
   return `${asked.filter((beat) => beat.acted).length} of ${count(asked.length, "beat")} of your theme ${asked.length === 1 ? "is" : "are"} acted${more}.`;

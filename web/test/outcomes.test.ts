@@ -28,17 +28,23 @@ beforeAll(() => {
   Object.assign(globalThis, { document: { createElement: (tag: string) => new Plain(tag) } });
 });
 
-const beat = (given: Partial<Beat>): Beat => ({ text: "dances", kind: "deed", emotion: "neutral", acted: true, stood_for: false, why: "", unshown: [], ...given });
+const beat = (given: Partial<Beat>): Beat => ({ text: "dances", kind: "deed", who: "", emotion: "neutral", acted: true, stood_for: false, why: "", unshown: [], ...given });
 const figures = (given: Partial<KeyframeFigures>): KeyframeFigures => ({ keyframe: 0, skill: "loco", seconds: 1, reached: true, reason: "", contact_error: null, pen_max: 0, notes: [], performed_as: null, ...given });
 const ACTED = beat({});
 const STOOD = beat({ text: "conducts an orchestra", acted: false, why: "the body is seen doing something else in its place", stood_for: true, unshown: ["conducts an orchestra"] });
 const MISSING = beat({ acted: false, why: "no keyframe is left that shows it" });
+const TOLD = beat({ text: "Laundry day", kind: "other", acted: false, why: "it is no deed" });
+const THEIRS = beat({ text: "the bell rings", kind: "other", who: "the bell", acted: false, why: "somebody or something else does it" });
 const UNDONE = beat({ kind: "undone", acted: false, why: "left undone, as the theme asks" });
 
 describe("outcomes", () => {
   test("each beat has one, and what only stands for it is not called acted", () => {
     expect([ACTED, STOOD, MISSING, UNDONE].map(outcomeOf)).toEqual(["acted", "stands", "missing", "undone"]);
     expect(beatsWords([ACTED, STOOD, MISSING, UNDONE])).toBe("1 of 3 beats of your theme are acted, something stands for 1 more.");
+  });
+
+  test("what is told and nobody does is not counted, and what somebody else does is", () => {
+    expect(beatsWords([ACTED, TOLD, THEIRS])).toBe("1 of 2 beats of your theme are acted.");
   });
 
   test("every one has its own word, so that colour alone tells nothing", () => {

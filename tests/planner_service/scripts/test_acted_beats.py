@@ -54,7 +54,7 @@ def test_every_beat_is_acted_or_there_is_a_reason_and_shares_are_shares(beats: l
     assert all(one.acted == (not one.why) for one in found.outcomes)
     assert all(one.acted + one.stood_for <= 1 for one in found.outcomes)
     assert found.acted + found.stood_for + len(found.missing) == found.asked
-    assert found.asked + len(found.undone) == len(beats)
+    assert found.asked + len(found.undone) + len(found.told) == len(beats)
     assert 0 <= found.spare_share <= found.other_share <= 1
     assert not any(one.acted for one in found.undone)
     assert all(one.why == one.beat.why for one in found.outcomes if one.beat.why)
@@ -171,6 +171,17 @@ def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() 
     assert [(one["text"], one["acted"]) for one in told["beats"]] == [
         ("sits down", True), ("reads", False), ("eats no supper", False),
     ]  # fmt: skip
+
+
+def test_what_is_no_deed_is_named_and_not_counted_but_what_somebody_else_does_is() -> None:
+    day = Beat(text="Laundry day", kind="other", why="it is no deed")
+    rings = Beat(text="the bell rings", kind="other", who="the bell", why="somebody or something else does it")
+    found = acted_beats([day, SITS, rings], [shot(1)])
+    assert (found.acted, found.asked, len(found.told)) == (1, 2, 1)
+    assert found.lines()[1:3] == [
+        "not acted: the bell rings (somebody or something else does it)",
+        "told, not acted: Laundry day (it is no deed)",
+    ]
 
 
 def test_time_that_shows_what_only_stands_for_a_beat_is_no_time_of_an_acted_one() -> None:

@@ -40,6 +40,43 @@ def test_what_is_denied_is_undone_what_others_do_is_theirs_and_all_else_is_a_dee
 @for_each(
     ("theme", "wanted"),
     [
+        ("She remembers how they used to dance here, and she sways.", ["memory", "memory", "deed"]),
+        ("She remembers how they danced and laughed, and smiles.", ["memory", "memory", "memory", "deed"]),
+        ("She recalls the day he left and shuts the window.", ["memory", "memory", "deed"]),
+        ("He would always sit by the window. Now he lies down.", ["memory", "deed"]),
+        ("He remembers where he left the keys and picks them up.", ["memory", "memory", "deed"]),
+        # but not what is done when something comes to mind, nor what one gets used to
+        ("He remembers his keys when he reaches the door.", ["deed", "memory"]),
+        ("She gets used to the noise and sleeps.", ["deed", "deed"]),
+    ],
+)
+def test_what_is_remembered_is_not_done_now(theme: str, wanted: list[str]) -> None:
+    assert kinds(theme) == wanted
+
+
+@for_each(
+    ("theme", "told"),
+    [
+        ("Laundry day. He folds shirts.", ["Laundry day"]),
+        ("Mia is six. She jumps.", ["is six"]),
+        ("Rain all Sunday. She reads. Nothing.", ["Rain all Sunday", "Nothing"]),
+        ("I wept until I had nothing left.", ["had nothing left"]),
+        ("He laughs: they were on his head the whole time.", ["were on his head the whole time"]),
+        ("He is a widower. He reads.", ["is a widower"]),
+        ("She rains blows on the door. She is on her knees. A nap. Coffee. He storms out. She has a bath.", []),
+    ],
+)
+def test_what_nobody_does_is_told_and_is_no_deed(theme: str, told: list[str]) -> None:
+    assert [one.text for one in beats_of(theme) if not one.beat.asked] == told
+
+
+def test_a_nap_is_a_deed_though_no_verb_says_so() -> None:
+    assert [one.clause.verb for one in beats_of("He folds shirts. Then a short nap.")] == ["fold", "nap"]
+
+
+@for_each(
+    ("theme", "wanted"),
+    [
         ("She reads. She is sad. She does not eat.", ["deed", "feeling", "undone"]),
         ("He remembers his dead wife and sits down.", ["memory", "deed"]),
         ("He had eaten. He reads.", ["memory", "deed"]),
@@ -119,6 +156,12 @@ def test_one_person_is_played_and_others_are_named(theme: str, who: list[str]) -
         ("He eats. He rests on the sofa.", ["neutral", "relaxed"]),
         ("A tired student studies.", ["tired"]),
         ("He laughs and dances.", ["happy", "happy"]),
+        ("Yusuf freezes, turns off the lamp and breathes a sigh of relief.", ["stressed", "stressed", "relaxed"]),
+        ("He freezes the soup. He hid behind the sofa.", ["neutral", "stressed"]),
+        ("Priya curses, paces, then shrugs and eats.", ["angry", "angry", "neutral", "neutral"]),
+        ("He cries. He shrugs.", ["sad", "sad"]),
+        ("Mia collapses giggling on the rug.", ["happy", "happy"]),
+        ("He sits on the bed, sobbing, and cries.", ["sad", "sad", "sad"]),
         ("He shouts, hides from her mother and slams the door.", ["angry", "angry", "angry"]),
     ],
 )

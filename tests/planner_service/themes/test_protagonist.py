@@ -52,6 +52,8 @@ from planner_service.themes.sentence_parser import clauses_of_text
         ("Someone comes home and sleeps.", "Sam", "they"),
         ("My brother calls; I sit down and cry.", "Sam", "they"),
         # who does most of it
+        ("A robot named Bolt sweeps the floor.", "Bolt", "they"),
+        ("A boy called Max jumps on the bed.", "Max", "he"),
         ("Her Otto emigrated and sends no letters; Tante Greta waits by the window.", "Tante Greta", "she"),
         ("Gwen and Bill quarrel; Bill storms out, Gwen washes up, sits down and weeps.", "Gwen", "she"),
         ("The twins fight; their mother sits down, holds her head and sighs.", "the mother", "she"),
@@ -91,9 +93,27 @@ def test_whose_mother_calls_is_the_hero_and_not_the_mother() -> None:
 
 
 @for_each(
+    ("theme", "hero"),
+    [
+        ("The boy next door came round to return the drill, so Anselm thanked him. He hung a painting.", "Anselm"),
+        ("A courier rings the bell. Oskar opens, signs for the parcel and unpacks it.", "Oskar"),
+        ("Her mother calls, and Rosa sits down on the sofa, sighs and listens.", "Rosa"),
+        ("Mr Novak's wife is away. He watches football and drinks beer.", "Mr Novak"),
+        # whoever does more is what it is about
+        ("The courier carries parcels up the stairs, rests, drinks water and leaves. Anna closes the door.",
+         "The courier"),
+        ("Tom's mother is visiting. She inspects the shelves and sits down on the sofa.", "Tom's mother"),
+    ],
+)  # fmt: skip
+def test_a_visitor_is_not_the_hero_where_somebody_with_a_name_does_as_much(theme: str, hero: str) -> None:
+    assert hero_of(clauses_of_text(theme)) == hero
+
+
+@for_each(
     ("theme", "theirs"),
     [
         ("Omar asked some friends over. Before they arrive he sets the table.", ["they arrive"]),
+        ("Before they arrive he sets the table.", ["they arrive"]),
         ("No one calls, so he goes to bed.", ["No one calls"]),
         ("Nobody calls. He goes to bed.", ["Nobody calls"]),
         ("Ola and Ben come home. They sit down.", []),
@@ -102,3 +122,15 @@ def test_whose_mother_calls_is_the_hero_and_not_the_mother() -> None:
 )
 def test_what_several_others_or_nobody_do_is_not_the_heros(theme: str, theirs: list[str]) -> None:
     assert [one.text for one in beats_of(theme) if one.beat.kind == "other"] == theirs
+
+
+@for_each(
+    ("theme", "kinds"),
+    [
+        ("A robot named Bolt sweeps. It sits down. Bolt sleeps.", ["deed", "deed", "deed"]),
+        ("A robot sweeps. It rains. It is late.", ["deed", "other", "other"]),
+        ("Anna sits down. It sleeps.", ["deed", "other"]),
+    ],
+)
+def test_it_is_the_hero_only_where_one_calls_a_hero_so(theme: str, kinds: list[str]) -> None:
+    assert [one.beat.kind for one in beats_of(theme)] == kinds

@@ -129,6 +129,9 @@ def test_no_word_of_any_text_is_read_twice(text: str) -> None:
         # lists, and where and when
         ("He eats bread and butter, cheese and a pear.", ["eats bread and butter, cheese and a pear"]),
         ("She eats a plum and a pear before she sleeps.", ["eats a plum and a pear", "sleeps"]),
+        ("Before the interview Tomasz bows and sits.", ["bows before the interview", "sits"]),
+        ("After the argument she slams the door and cries.", ["slams the door after the argument", "cries"]),
+        ("Before the guests arrive Anna bows and sits.", ["bows", "sits", "arrive"]),
         ("He sits next to the window.", ["sits next to the window"]),
         ("In the kitchen Anna reads.", ["reads in the kitchen"]),
         ("The baker, up since two, wipes the glass and hums.", ["wipes the glass", "hums"]),
@@ -294,3 +297,29 @@ def test_who_finds_nothing_but_one_thing_finds_that(words: str) -> None:
     assert not clauses_of_text(f"She finds {words}.")[0].denied
     assert not any(one.denied for one in clauses_of_text(f"She looks around and finds {words}."))
     assert clauses_of_text("She finds nobody there.")[0].denied
+
+
+@for_each(
+    ("text", "subject", "verbs"),
+    [
+        ("A robot named Bolt sweeps the floor.", "A robot named Bolt", ["sweep"]),
+        ("An old man called Viktor Petrov naps.", "An old man called Viktor Petrov", ["nap"]),
+        ("A friend called Anna and told her the news.", "A friend", ["call", "tell"]),
+        ("She named the cat Bolt.", "She", ["name"]),
+    ],
+)
+def test_a_name_that_a_noun_is_given_belongs_to_who_does_it(text: str, subject: str, verbs: list[str]) -> None:
+    clauses = clauses_of_text(text)
+    assert (clauses[0].subject, [clause.verb for clause in clauses]) == (subject, verbs)
+
+
+@for_each(
+    ("text", "who"),
+    [
+        ("He opens the door to the boy next door, who returns the drill.", "the boy"),
+        ("She burps the baby, who was sick.", "the baby"),
+        ("He feeds the dog, who barks.", "the dog"),
+    ],
+)
+def test_who_tells_of_a_person_where_one_is_named_before_it(text: str, who: str) -> None:
+    assert clauses_of_text(text)[-1].doer == who

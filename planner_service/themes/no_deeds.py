@@ -1,0 +1,56 @@
+"""What a theme tells and nobody does: when it is, the weather, who and how old somebody is, and what there is not."""
+
+from __future__ import annotations
+
+import re
+from typing import Final
+
+from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.protagonist import head_of
+from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.verb_finder import tokens_of
+
+_NONE: Final = frozenset(("nothing", "nobody", "none", "no", "silence"))
+_FALLS: Final = frozenset(("rain", "snow", "hail", "sleet", "drizzle", "thunder"))
+"""Weather that may be a verb too: "Rain all Sunday"."""
+_ON_SOMEBODY: Final = re.compile(r"\b(?:on|in|around|under) (?:his|her|my) \w+", re.IGNORECASE)
+"""Where things are that are no people: "they were on his head"."""
+_OF_AGE: Final = frozenset(
+    ("year", "old", "now", "almost", "nearly", "already", "just", "only", "month", "today", "be")
+)
+"""Words beside a number that tell an age: "is six years old"."""
+
+
+def tells_no_deed(clause: Clause) -> bool:
+    """Whether a clause tells nothing that anybody does or feels."""
+    if not clause.verb or (clause.text.split()[0].lower() in _FALLS and not clause.doer):
+        return _is_when_or_none(clause)
+    if clause.verb == "be" and clause.subject:
+        of_things = clause.subject.lower() == "they" and _ON_SOMEBODY.search(clause.text) is not None
+        return of_things or _is_who(clause) or _is_age(clause)
+    rest = clause.lemmas[1:2]
+    return clause.verb == "have" and (not _NONE.isdisjoint(rest) or not grammar().numbers.isdisjoint(rest))
+
+
+def _is_when_or_none(clause: Clause) -> bool:
+    """Whether words without a verb tell the time, the weather, or that there is nothing: "Laundry day", "Nothing"."""
+    words = theme_words()
+    near = (head_of(clause.text).lower(), clause.text.split()[0].lower())
+    told = {*near, *map(lemma_of, near)}
+    return bool(told & (words["weather"] | words["told_times"] | _NONE))
+
+
+def _is_who(clause: Clause) -> bool:
+    """Whether it is told who somebody is: "is a widower"."""
+    tokens = tokens_of(clause.text)[1:]
+    head = head_of(" ".join(token.text for token in tokens)).lower()
+    led = bool(tokens) and tokens[0].low in grammar().marks
+    return led and (head in theme_words()["people"] or lemma_of(head) in theme_words()["people"])
+
+
+def _is_age(clause: Clause) -> bool:
+    """Whether it is told how old somebody is: "is six"."""
+    rest = [token.low for token in tokens_of(clause.text)[1:]]
+    numbers = [word for word in rest if word in grammar().numbers or word.isdigit()]
+    return bool(numbers) and all(word in numbers or lemma_of(word) in _OF_AGE for word in rest)
