@@ -191,6 +191,8 @@ class Action:
     """Pelvis goal on the floor, [x, z], for loco."""
     facing: float | None = None
     """Yaw to end with, for loco."""
+    by: tuple[float, float] | None = None
+    """Where its way first leads, [x, z]: round to where there is room to run. None for the shortest way."""
     hand: str = "right"
     """The hand that touches: left or right."""
     hold: float = 1.5

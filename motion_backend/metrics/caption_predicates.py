@@ -365,8 +365,10 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "hands_apart": lambda body: np.linalg.norm(_palms(body)[:, 0] - _palms(body)[:, 1], axis=-1),
     # Degrees that the left and the right hand turn in all.
     "hand_turn": lambda body: _turning(body, ("left_wrist", "right_wrist")),
-    # Metres, of the left and the right foot: the lowest corner of its sole, its heel, its toes; its ankle.
+    # Metres, of the left and the right foot: the lowest corner of its sole, and of both soles, its heel, its toes; its
+    # ankle.
     "foot_height": lambda body: _high(body.soles).min(axis=-1),
+    "in_flight": lambda body: _high(body.soles).min(axis=(-1, -2)),
     "heel_height": lambda body: _high(body.soles[:, :, 0]),
     "toe_height": lambda body: _high(body.soles[:, :, 1]),
     "foot_ahead": lambda body: _ahead(body, _both(body, "ankle")),

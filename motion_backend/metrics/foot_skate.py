@@ -10,6 +10,9 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
+IN_AIR, FALLS = 0.01, 3.0
+"""A body no point of whose soles is lower than this (metres at 1.70 m), and whose pelvis is drawn down by more than
+this (m/s²), as bodies in the air are, is in flight: its feet slide on nothing. One that hovers slides all the same."""
 REACH_UP = 0.10
 """A surface holds up what is at most this far below its top (metres): bodies sink into cushions."""
 LOW = 0.05
@@ -19,7 +22,7 @@ GMD has it, for one size of body. Children's toes pass the floor so much nearer 
 
 def skate_ratio(body: Kinematics) -> float:
     """GMD's foot skating ratio, heights from the toe joints' rest height, its 0.25 s window at our frame rate, its
-    5 cm as the body is tall."""
+    5 cm as the body is tall; of who runs, without flight."""
     motion = body.motion
     toes = body.positions[:, [INDEX["left_foot"], INDEX["right_foot"]]]
     if len(toes) < 3:
@@ -31,8 +34,15 @@ def skate_ratio(body: Kinematics) -> float:
     from scipy.ndimage import uniform_filter1d
 
     mean = uniform_filter1d(speed, window, axis=0, mode="nearest")
-    skating = low[:-1] & low[1:] & (speed > 0.5) & (mean > 0.5)
+    skating = low[:-1] & low[1:] & (speed > 0.5) & (mean > 0.5) & ~in_flight(body)[:, None]
     return float(skating.any(axis=1).mean())
+
+
+def in_flight(body: Kinematics) -> NDArray[np.bool_]:
+    """Whether a body flies in a frame or the next, as in a run. (T - 1,)."""
+    drawn = np.gradient(np.gradient(body.positions[:, 0, 1])) * body.motion.fps**2
+    air = (body.soles[..., 1].min(axis=(1, 2)) > IN_AIR * body.motion.skeleton.scale) & (drawn < -FALLS)
+    return np.asarray(air[1:] | air[:-1])
 
 
 def skate_speed(body: Kinematics) -> float:
@@ -62,7 +72,7 @@ def _slip(body: Kinematics, counts: NDArray[np.bool_]) -> float:
     low = soles[..., 1] < LOW * body.motion.skeleton.scale
     low &= np.repeat(counts, soles.shape[1] // 2, axis=1)
     speed = np.linalg.norm(np.diff(soles[..., [0, 2]], axis=0), axis=-1) * body.motion.fps * 100
-    least = np.where(low[1:] & low[:-1], speed, np.inf).min(axis=1)
+    least = np.where(low[1:] & low[:-1] & ~in_flight(body)[:, None], speed, np.inf).min(axis=1)
     stands = np.isfinite(least)
     return float(least[stands].mean()) if stands.any() else 0.0
 

@@ -23,6 +23,7 @@ from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
 from planner_service.grounding.opening_places import LACKS, OpeningPlace, entry, opening_place
+from planner_service.grounding.running_places import LONG_ENOUGH, runs, way_to_run
 from planner_service.grounding.seat_tables import done_at_tables
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
@@ -419,7 +420,20 @@ class _Stage:
         ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
         if ahead is not None:
             return replace(action, goal=ahead, facing=None)
-        return action if wanders and stays(action.caption) else self._walk(action, following, place, leg)
+        if wanders and stays(action.caption):
+            return action
+        walk = self._walk(action, following, place, leg)
+        return self._run(walk, place.room, at) if at is not None and runs(action) else walk
+
+    def _run(self, action: Action, room: int, at: Point) -> Action:
+        """A run with room for it: where it leads to no place in particular, to where it is longest, in another room too
+        if need be; to one that is near by a place that is farther."""
+        to = None if action.facing is None else action.goal
+        ways = [way_to_run(self.walkable, at, room, self.rng, to)]
+        if to is None and (ways[0] is None or ways[0].straight < LONG_ENOUGH):
+            ways += [way_to_run(self.walkable, at, one, self.rng) for one in range(len(self.home.rooms)) if one != room]
+        way = max(filter(None, ways), key=lambda one: one.straight, default=None)
+        return action if way is None else replace(action, goal=way.goal, by=way.by)
 
     def _before(self, kind: Kind, action: Action, place: Place, at: Point | None) -> Action:
         """Who is to stand at a window or to get to a door goes there, and who stays looks out."""
@@ -535,7 +549,7 @@ def height_of(caption: str) -> str:
 def action_to_dict(action: Action) -> dict[str, Any]:
     """Plain values of an action for story.json."""
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    for name in ("lacks", "begins"):
+    for name in ("lacks", "begins", "by"):
         if not plain[name]:
             del plain[name]
     return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}

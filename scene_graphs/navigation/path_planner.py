@@ -202,6 +202,13 @@ class Walkable:
         line, _ = along_lines(np.asarray(start, dtype=float)[None], np.asarray(goal, dtype=float)[None], 0.02)
         return self._on_floor(line)
 
+    def straight(self, starts: Array, ends: Array) -> Array:
+        """Lengths of the straight lines from places (N, 2) to others (M, 2), 0 where the body does not fit. (N, M)."""
+        first, last = np.repeat(starts, len(ends), axis=0), np.tile(ends, (len(starts), 1))
+        fits = np.isfinite(self._costs(first, last))
+        lengths: Array = (np.hypot(*(last - first).T) * fits).reshape(len(starts), len(ends))
+        return lengths
+
     def path(self, start: Point2, goal: Point2) -> Array:
         """A smooth way from start to goal, at most about 0.1 m between points, ends included. (N, 2).
 
@@ -236,6 +243,13 @@ class Walkable:
         clear = self.field.distances[tuple(self._cells[candidates].T)]
         roomy = candidates[clear >= min(0.5, float(np.quantile(clear, 0.8)))]
         return self._center(int(rng.choice(roomy)))
+
+    def free_points(self, rng: np.random.Generator, room: int, count: int, spare: float = 0.0) -> Array:
+        """Places of a room where a body has `spare` metres more than it needs, drawn by chance. (at most count, 2)."""
+        centers = self._centers[self.field.distances[self._free] >= self.radius + spare]
+        inside = shapely.contains_xy(shapely.Polygon(self.home.room_polygon(room)), centers[:, 0], centers[:, 1])
+        found: Array = rng.permutation(centers[inside])[:count]
+        return found
 
     @cached_property
     def _centers(self) -> Array:

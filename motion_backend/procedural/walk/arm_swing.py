@@ -56,7 +56,9 @@ class ArmSwing:
     moving_share: float
     """and this much more in full stride."""
     folds_ratio: float
-    """How much the elbow bends for every radian forward of where the arm is farthest back."""
+    """How much the elbow bends for every radian forward of where the arm is farthest back,"""
+    folds_less_deg: tuple[float, float]
+    """less and less from one bend of the style's to the other."""
     shoulder_share: float
     """Of the elbow's bend, that the upper arm goes back for,"""
     forearm_share: float
@@ -152,7 +154,8 @@ def _hanging(style: Walk, index: int, swung: tuple[Array, Array, Array], steps: 
     with_step = np.radians(row.beat_deg) * steps.wave(row.beat_at_phase)
     swing = reach * beat + np.radians(hangs) + (pace * with_step + off[:, 0]) * moving
     more = (bent - row.straight_deg) * (row.still_share + row.moving_share * moving)
-    folds = row.folds_ratio * own.folds_ratio * (reach * (folded + moving) + np.radians(hangs))
+    folding = row.folds_ratio * own.folds_ratio * float(np.interp(bent, row.folds_less_deg, (1.0, 0.0)))
+    folds = folding * (reach * (folded + moving) + np.radians(hangs))
     bend = np.radians(row.straight_deg + more) + folds
     bend = bend + np.radians(row.folds_beat_deg) * pace * moving * steps.wave(row.folds_beat_at_phase)
     shoulder, fore = swing - row.shoulder_share * bend, swing + row.forearm_share * bend

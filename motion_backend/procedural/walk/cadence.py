@@ -38,6 +38,8 @@ class Cadence:
     turn_max_hz: float
     """but no quicker than this."""
     min_hz: float
+    run_hz: float
+    """Who runs does so at this whatever the speed, of a usual stride: fast is whose steps are long."""
     skip_max_hz: float
     start_m: float
     """So far the first steps are short,"""
@@ -74,9 +76,12 @@ def plan_phase(
     if style.aside == SIDEWAYS:
         # Feet that are brought together and apart again must not cross.
         longest = route.speed / (row.side_step_max_ratio * style.width * scale)
-    # A turn takes a step every half right angle or so, a spin fewer: nobody trips along at five steps a second.
+    # A turn takes a step every 60 degrees or so, a spin fewer: nobody trips along at five steps a second.
     turned = np.minimum(turning / row.turn_rad, row.turn_max_hz)
     rate = np.maximum.reduce([usual, turned, longest, np.full_like(usual, row.min_hz)])
+    if style.double < 0:
+        # No leg has to reach as far as a step in flight goes.
+        rate = np.maximum(turned, row.run_hz / (style.stride * scale ** (row.size_power / 2)))
     if style.skips:
         rate = np.where(route.speed > footstep_table().beat.skip_from_mps, np.minimum(rate, row.skip_max_hz), rate)
     if stride is None:

@@ -82,6 +82,8 @@ class LandingPlace:
     back_s: float
     """How far behind the middle of its stance, for its speed."""
     back_max_mps: float
+    run_back_s: float
+    """The same of who runs, at any speed."""
     scatter_m: float
     uneven_m: float
     ahead_max_rad: float
@@ -340,6 +342,10 @@ def _swing_of(
     leaves, stride = (_forward(target - origin, points, full) for points in (yaw, heading))
     dragged = shape.drag_clearance_share if style.drag and beat.index == 1 else 1.0
     clearance = style.clearance * style.character.clearance_sides_ratio**side
+    if style.double < 0:
+        # Who runs lifts feet high that go far, and not where he gets going and slows down.
+        usual = foot_table().air.usual_m
+        clearance = usual + abs(leaves) * (clearance - usual)
     rolled = np.radians(shape.heel_off_deg) * style.roll * abs(leaves) ** shape.heel_off_power
     return Swing(
         origin,
@@ -395,7 +401,8 @@ def _stance(beat: _Beat, route: Route, at: int, style: Walk, place: LandingPlace
     speed, heading = float(route.speed[at]), float(route.heading[at])
     ahead, under_way = np.array([np.sin(heading), np.cos(heading)]), min(speed / place.under_way_mps, 1.0)
     # A little behind the middle of its stance: the rising heel carries the ankle forward at the end of it.
-    behind = place.back_s * min(speed, place.back_max_mps) * np.cos(np.radians(style.aside))
+    back = place.run_back_s * speed if style.double < 0 else place.back_s * min(speed, place.back_max_mps)
+    behind = back * np.cos(np.radians(style.aside))
     middle = route.position[at] - behind * ahead
     longer = style.character.step_sides_m * (1 if beat.index == 0 else -1) - style.drag * (beat.index == 1)
     middle = middle + under_way * longer * ahead

@@ -107,8 +107,10 @@ def lifted(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skelet
         # Feet in the air do not hold the body down.
         limits.append(np.where(pose.planted[:, index] > 0, top, np.maximum(top, carried - row.in_air_m)))
     # The least of a few frames, then smoothed over no more than these: never above what the legs allow, and no corner.
-    low = minimum_filter1d(np.minimum(wanted, np.minimum(*limits)), LOWEST_OF, mode="nearest")
-    pelvis[:, 1] = gaussian_filter1d(low, SMOOTHED, radius=SMOOTHED_OVER, mode="nearest")
+    # Of who runs only what the legs take off: the least of a few frames would leave nothing of a flight.
+    flies = wanted if style.double < 0 else np.zeros_like(wanted)
+    low = minimum_filter1d(np.minimum(wanted, np.minimum(*limits)) - flies, LOWEST_OF, mode="nearest")
+    pelvis[:, 1] = flies + gaussian_filter1d(low, SMOOTHED, radius=SMOOTHED_OVER, mode="nearest")
     return pelvis
 
 

@@ -77,6 +77,8 @@ class PathSpeed:
     """slows down,"""
     push_from_mps: float
     """as if it were no slower."""
+    runs_mps: float
+    """Who is to be faster than this runs: he takes bends and starts and stops the harder, the faster he is to be."""
     backwards_mps: float
     """Who goes aside or backwards, while turning, is no faster."""
 
@@ -261,12 +263,14 @@ def _speed_limits(tangent: Array, to_go: Array, speed: float, row: PathSpeed, be
     """How fast each point of a path is passed by a body that faces `to_go` (M,) from it: slowly in bends and turns,
     quickening and slowing down as bodies can. (M,)."""
     bend, turn = (np.maximum(np.abs(np.gradient(yaw, SPACING)), STRAIGHT) for yaw in (tangent, tangent + to_go))
-    limit = np.minimum(speed, (row.aside_max_mps2 / bend) ** 0.5)
+    harder = max(speed / row.runs_mps, 1.0)
+    limit = np.minimum(speed, harder * (row.aside_max_mps2 / bend) ** 0.5)
     limit = np.minimum(limit, row.turn_max_rad_per_s / turn)
     ahead = np.clip(np.cos(to_go), 0.0, 1.0)
     limit = np.minimum(limit, row.backwards_mps + ahead * max(speed - row.backwards_mps, 0.0))
     limit[0], limit[-1] = row.end_mps if begun is None else begun, row.end_mps
-    push, brake = (rate * max(speed, row.push_from_mps) for rate in (row.push_per_s, row.brake_per_s))
+    push = row.push_per_s * harder**2 * max(speed, row.push_from_mps)
+    brake = row.brake_per_s * harder * max(speed, row.push_from_mps)
     for i in range(1, len(limit)):
         limit[i] = min(limit[i], np.sqrt(limit[i - 1] ** 2 + 2 * push * SPACING))
     for i in range(len(limit) - 2, -1, -1):

@@ -95,8 +95,9 @@ QUICK, RUNS = 1.7, 2.0
 """Who is to be faster (m/s) walks quickly, and runs."""
 HASTE = re.compile(r"\b(?:quick|run|rush|hurr|dash|fast)", re.IGNORECASE)
 """Words of a caption that ask for haste."""
-OFTEN, NEARLY = 0.9, 0.9
-"""A way with so little room that all but the fastest frames, this share, are slower than so much of it is told."""
+OFTEN, NEARLY, OVER = 0.9, 0.9, 5
+"""A way with so little room that all but the fastest frames, this share, are slower than so much of it is told; of
+where the body gets in so many frames, since it surges with every step."""
 GOES_ON = 1.0
 """So far a walk leads on after a spin, where it is twice as long (metres)."""
 HALTS = 0.6
@@ -110,6 +111,15 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
 
     Where the way leads `onward` to another place, the body passes by this one in stride, if there is room for that.
     """
+    made = len(body.frames)
+    if action.by is not None:
+        _go(body, action.by, None, action, goal)
+    _go(body, goal, facing, action, onward)
+    if asks_for_haste(action) and len(body.frames) > made:
+        _note_no_room(body, made, walk_style(action.emotion, action.caption).speed)
+
+
+def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: Point | None) -> None:
     away = float(np.hypot(goal[0] - body.place[0], goal[1] - body.place[1]))
     near, to_turn = away < AT_THE_SPOT, 0.0 if facing is None else abs(float(rotations.wrap(facing - body.yaw)))
     if near and to_turn < FACING_IT:
@@ -121,7 +131,6 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
-    made = len(body.frames)
     if away < SHORT_WAY and to_turn < TURNING_ROUND:
         path = np.array([body.place, goal])
     if style.spin and not near:
@@ -136,8 +145,6 @@ def go(body: Body, goal: Point, facing: float | None, action: Action, onward: Po
         for way in before:
             _stride(body, way, None, style)
     _stride(body, path, facing, style, None if near else onward)
-    if style.speed > QUICK and asks_for_haste(action):
-        _note_no_room(body, made, style.speed)
 
 
 def asks_for_haste(action: Action) -> bool:
@@ -148,8 +155,10 @@ def asks_for_haste(action: Action) -> bool:
 def _note_no_room(body: Body, made: int, speed: float) -> None:
     """Say so where the way, walked in all frames but the first that were `made` before it, was too short to get up to
     a speed (m/s)."""
+    if speed <= QUICK:
+        return
     places = np.concatenate([one.pelvis for one in body.frames[made:]])[:, [0, 2]]
-    pace = np.linalg.norm(np.diff(places, axis=0), axis=1) * FPS
+    pace = np.linalg.norm(places[OVER:] - places[:-OVER], axis=1) * FPS / OVER
     if len(pace) and float(np.quantile(pace, OFTEN)) < NEARLY * speed * body.skeleton.scale:
         body.note(f"no room to {'run' if speed > RUNS else 'walk quickly'}: the way is too short")
 

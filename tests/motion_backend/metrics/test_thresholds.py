@@ -46,6 +46,18 @@ def box(center: tuple[float, float, float], size: tuple[float, float, float], ow
     return Obstacles(np.array([center]), np.array([size]) / 2, np.zeros(1), (owner,), np.zeros(1, dtype=bool))
 
 
+def test_a_body_that_falls_through_the_air_slides_on_nothing_and_one_that_hovers_does() -> None:
+    """Both are two to four centimetres up and go at 1.2 m/s; only the first is drawn down as bodies are."""
+    time = np.arange(6) / FPS
+    flies = gliding(1.2, 0.04, frames=6).motion.root_positions.copy()
+    flies[:, 1] -= (9.81 / 2 * (time - time.mean()) ** 2).astype(np.float32)
+    flight = Kinematics.of(standing_still(root=flies, height=1.70))
+    assert foot_skate.in_flight(flight).all()
+    assert foot_skate.skate_ratio(flight) == foot_skate.support_slip(flight) == 0.0
+    assert foot_skate.skate_ratio(gliding(1.2, 0.03, frames=6)) == 1.0
+    assert foot_skate.support_slip(gliding(1.2, 0.03, frames=6)) == pytest.approx(120, rel=1e-3)
+
+
 # Seams
 
 

@@ -237,6 +237,22 @@ def test_who_skips_hops_on_the_same_foot() -> None:
     assert (~planted.any(axis=1)).any()
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_who_runs_flies_between_steps_lands_on_a_bent_knee_and_pushes_off_behind(seed: int) -> None:
+    motion = walked("run", seed=seed, goal=(0.0, 10.0))
+    body = Kinematics.of(motion.part(on_the_way(motion).start, on_the_way(motion).stop))
+    speed = np.linalg.norm(np.diff(body.positions[:, 0, [0, 2]], axis=0), axis=1) * FPS
+    assert np.quantile(speed, 0.9) >= 2.2
+    flags = body.motion.contacts.any(axis=1)
+    assert 0.25 <= 1 - flags.mean() <= 0.45
+    assert (body.soles[..., 1].min(axis=(1, 2)) > 0.01).mean() >= 0.15
+    at, landed = joints(body.motion), np.flatnonzero(np.diff(body.motion.contacts[:, 0]) > 0) + 1
+    lifted = np.flatnonzero(np.diff(body.motion.contacts[:, 0]) < 0)
+    assert (flexion(at, "left")[landed] > 20).all()
+    assert (at["left_ankle"][lifted, 2] < at["pelvis"][lifted, 2] - 0.25).all()
+    assert np.ptp(body.positions[:, 0, 1]) > 0.06
+
+
 def test_who_sidesteps_faces_across_the_way() -> None:
     motion = walked("sidestepping")
     at = joints(motion)
