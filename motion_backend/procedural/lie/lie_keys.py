@@ -322,15 +322,28 @@ class BothKnees:
 
 @table
 class HandsAndKnees:
-    """Hands under the shoulders."""
+    """Hands where they bear the body on its hip: what carries it stays."""
 
     name: Literal["hands_and_knees"]
     wait_s: float
+    pelvis_back_m: float
     hip_pitch_rad: float
     spine_pitch_rad: float
     head_pitch_rad: float
-    hands_ahead_m: float
     elbow_direction: Vector
+
+
+@table
+class SatBack:
+    """Over the heels, where no hand is needed; the right one still bears a little."""
+
+    name: Literal["sat_back"]
+    wait_s: float
+    pelvis_back_m: float
+    hip_pitch_rad: float
+    spine_pitch_rad: float
+    head_pitch_rad: float
+    wrist_ratio: Vector
 
 
 @table
@@ -398,7 +411,7 @@ class SettleOnFloor:
 class LieOnFloor:
     """From standing to lying on the floor; `lie_on_floor.toml` says how its columns are to be read."""
 
-    pose: tuple[OneKnee, OverOneKnee, BothKnees, HandsAndKnees, OnHip]
+    pose: tuple[OneKnee, OverOneKnee, BothKnees, SatBack, HandsAndKnees, OnHip]
     left_step: Step
     right_step: Step
     settle: SettleOnFloor
@@ -418,7 +431,7 @@ class RiseFromFloor:
     """From lying on the floor to standing; `rise_from_floor.toml` says how its columns are to be read."""
 
     leave: LeaveFloor
-    pose: tuple[OnHip, HandsAndKnees, BothKnees, OverOneKnee, OneKnee, Pushing, Stood]
+    pose: tuple[OnHip, HandsAndKnees, SatBack, BothKnees, OverOneKnee, OneKnee, Pushing, Stood]
     left_step: Step
     right_step: Step
 

@@ -12,7 +12,7 @@ from motion_backend import rotations
 from motion_backend.inverse_kinematics import two_bone
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
-from motion_backend.procedural.held_poses import UP, bend, both_sides, shoulders, standing, upright
+from motion_backend.procedural.held_poses import UP, bend, both_sides, standing, upright
 from motion_backend.procedural.lie.lie_keys import (
     BothKnees,
     HandsAndKnees,
@@ -24,6 +24,7 @@ from motion_backend.procedural.lie.lie_keys import (
     OverOneKnee,
     Pushing,
     RiseFromFloor,
+    SatBack,
     Step,
     Stood,
 )
@@ -54,8 +55,6 @@ KNEES_DOWN, KNEES_OUT = 0.34, 0.30
 """From where the pelvis will lie to the middle of the knees: towards the feet, and out (metres at 1.70 m)."""
 SHIN_OUT, SHIN_UP = 0.30, 0.16
 """How far out and up the left shin points from its knee when the body is down beside it, against down the mat."""
-HOLDS: Final = -0.9
-"""From so long before hands and knees on (against the time from there to the hip) the left knee keeps its place."""
 LANDS: Final = 0.2
 """So many seconds before the right foot is down the weight begins to leave the left knee."""
 ON_THIGH, OVER_THIGH, FINGERS_IN = 0.25, 0.120, 0.5
@@ -133,13 +132,17 @@ def kneel_down(start: Pose, mat: Mat, bearing: Bearing, keys: LieOnFloor) -> Pos
 
 def kneel_up(knelt: Pose, mat: Mat, bearing: Bearing, keys: RiseFromFloor) -> Pose:
     """From both knees to standing: the right foot is put forward, the left one follows as the body rises."""
-    pace, (*_, over, one, push, _stood) = 1 / bearing.tempo, keys.pose
+    pace, (*_, over, one, push, stood) = 1 / bearing.tempo, keys.pose
     end = standing(mat.standing_point, mat.bed.head_yaw, bearing, mat.skeleton)
     half = _on_one_knee(one, end, knelt, mat)
     pushing = _pushing(push, half, mat)
     left, end = replace(_over_one_knee(over, knelt, mat), reach=half.reach), replace(end, reach=pushing.reach)
-    poses = [_bound_for(half, knelt), _bound_for(half, left), half, pushing, _bound_for(pushing, end)]
-    up = interpolate(_times(keys.pose[3:], pace), poses, FPS)
+    begun, lifted, *later = _times((over, one, push, stood), pace)
+    lands = _seconds(keys.right_step, pace)[1] - LANDS * pace
+    left = _bound_for(half, left)
+    landing = replace(left, knees=np.stack([left.knees[0], half.knees[1]]))
+    poses = [_bound_for(half, knelt), left, landing, half, pushing, _bound_for(pushing, end)]
+    up = interpolate([begun, lifted, lands, *later], poses, FPS)
     up = _step(up, 1, _seconds(keys.right_step, pace), half, mat)
     return _step(up, 0, _seconds(keys.left_step, pace), end, mat)
 
@@ -160,40 +163,45 @@ def _seconds(step: Step, pace: float) -> tuple[float, float]:
 
 def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying, keys: LieKeys) -> Pose:
     """From both knees to lying: hands down, the left hip and side, then over into the way of lying."""
-    (*_, third, fourth), settle = keys.floor_down.pose, keys.floor_down.settle
-    hands = _on_hands_and_knees(third, knelt, mat)
+    (*_, second, third, fourth), settle = keys.floor_down.pose, keys.floor_down.settle
+    hands = _on_hands_and_knees(third, fourth, knelt, mat)
+    back = _sat_back(second, hands, mat)
     side = _on_the_side(knelt, mat, keys.pose)
     end = lying(knelt, mat.bed, style, mat.skeleton, keys.pose)
     hip = _on_the_hip(fourth, hands, side, mat)
-    poses, waits = [side], [third.wait_s, fourth.wait_s, settle.side_wait_s]
+    poses, waits = [side], [second.wait_s, third.wait_s, fourth.wait_s, settle.side_wait_s]
     if style.side != "left":
         poses.append(replace(_on_the_back(knelt, mat, keys.pose), palms=end.palms))
         waits.append(settle.back_wait_s)
     lifted = freed(end, mat.bed)
     waits += [settle.lifted_wait_s] * len(lifted) + [settle.end_wait_s]
     poses = [replace(pose, reach=hip.reach) for pose in (*poses, *lifted, end)]
-    poses = [replace(knelt, reach=hands.reach, palms=hands.palms), hands, hip, *poses]
+    poses = [replace(knelt, reach=hands.reach, palms=hands.palms), back, hands, hip, *poses]
     times = np.cumsum([0.0, *waits]) / style.bearing.tempo
-    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[1:4], mat)
+    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[3:5], mat)
 
 
 def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pose:
     """From lying to both knees: over the left side onto hands and knees, and the trunk up."""
-    (first, second, third, *_), leave = keys.floor_up.pose, keys.floor_up.leave
+    (first, second, third, fourth, *_), leave = keys.floor_up.pose, keys.floor_up.leave
     if rotations.rotate(start.hips, np.array([0.0, 0.0, 1.0])) @ mat.out < -0.5:
         back = _on_the_back(start, mat, keys.pose)
         over = interpolate([0.0, leave.back_wait_s / bearing.tempo], [start, back], FPS)
         return concatenate([over, rise_to_knees(over.at(len(over) - 1), mat, bearing, keys)])
-    knelt = _on_both_knees(third, start, mat)
-    hands = _on_hands_and_knees(second, knelt, mat)
+    knelt = _on_both_knees(fourth, start, mat)
+    hands = _on_hands_and_knees(second, first, knelt, mat)
+    back = _sat_back(third, hands, mat)
     side = replace(_on_the_side(start, mat, keys.pose), palms=start.palms)
     hip = _on_the_hip(first, hands, side, mat)
     lifted = freed(start, mat.bed)
     before = [replace(pose, reach=hip.reach) for pose in (start, *lifted, side)]
-    poses = [*before, hip, hands, replace(knelt, reach=hands.reach, palms=hands.palms)]
-    waits = [leave.lifted_wait_s] * len(lifted) + [leave.side_wait_s, first.wait_s, second.wait_s, third.wait_s]
+    poses = [*before, hip, hands, back, replace(knelt, reach=hands.reach, palms=hands.palms)]
+    waits = [leave.lifted_wait_s] * len(lifted) + [
+        leave.side_wait_s,
+        *(row.wait_s for row in (first, second, third, fourth)),
+    ]
     times = np.cumsum([0.0, *waits]) / bearing.tempo
-    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[-2:-5:-1], mat)
+    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[-4:-6:-1], mat)
 
 
 def _on_both_knees(row: BothKnees, pose: Pose, mat: Mat) -> Pose:
@@ -270,20 +278,32 @@ def _pushing(row: Pushing, half: Pose, mat: Mat) -> Pose:
     return _hand_on_thigh(replace(pushing, head=bend(0.0)), row.hand_share, mat)
 
 
-def _on_hands_and_knees(row: HandsAndKnees, knelt: Pose, mat: Mat) -> Pose:
-    """Hands under the shoulders."""
-    hips = upright(mat.bed.head_yaw, row.hip_pitch_rad)
-    pose = replace(knelt, hips=hips, spine=bend(row.spine_pitch_rad), head=bend(row.head_pitch_rad))
-    places = shoulders(pose.repeat(1), mat.skeleton)[0] * [1.0, 0.0, 1.0] + HAND_REST * UP
-    places = places + row.hands_ahead_m * mat.skeleton.scale * mat.up
-    return replace(_on_palms(pose, places, mat), elbows=both_sides(row.elbow_direction))
+def _on_hands_and_knees(row: HandsAndKnees, hip: OnHip, knelt: Pose, mat: Mat) -> Pose:
+    """Hands where they bear on the hip, so that none has to slide under its load."""
+    hips, pelvis = upright(mat.bed.head_yaw, row.hip_pitch_rad), mat.over_knees(0.0, row.pelvis_back_m)
+    pose = replace(knelt, pelvis=pelvis, hips=hips, spine=bend(row.spine_pitch_rad), head=bend(row.head_pitch_rad))
+    return replace(_on_palms(pose, hip, mat), elbows=both_sides(row.elbow_direction))
+
+
+def _sat_back(row: SatBack, hands: Pose, mat: Mat) -> Pose:
+    """From hands and knees back over the heels: whoever lifted the hands there would fall onto them."""
+    return replace(
+        hands,
+        pelvis=mat.over_knees(0.0, row.pelvis_back_m),
+        hips=upright(mat.bed.head_yaw, row.hip_pitch_rad),
+        spine=bend(row.spine_pitch_rad),
+        head=bend(row.head_pitch_rad),
+        arms=both_sides(row.wrist_ratio),
+        reaching=np.array([0.0, 1.0]),
+        pressing=np.array([0.0, 1.0]),
+    )
 
 
 def _on_the_hip(row: OnHip, hands: Pose, side: Pose, mat: Mat) -> Pose:
     """Half-way between hands and knees and lying on the side: the left hip nearly down, both hands bearing."""
     scale, floor = mat.skeleton.scale, mat.bed.pelvis * [1.0, 0.0, 1.0]
     right_ankle = 0.5 * (hands.ankles[1] + side.ankles[1]) + row.right_ankle_up_m * UP
-    pose = replace(
+    return replace(
         hands,
         pelvis=floor + scale * (row.pelvis_out_m * mat.out + row.pelvis_up_m * UP),
         hips=rotations.slerp(hands.hips, side.hips, 0.5),
@@ -296,13 +316,13 @@ def _on_the_hip(row: OnHip, hands: Pose, side: Pose, mat: Mat) -> Pose:
         elbows=np.array([row.left_elbow_direction, row.right_elbow_direction]),
         planted=np.zeros(2),
     )
+
+
+def _on_palms(pose: Pose, row: OnHip, mat: Mat) -> Pose:
+    """Both hands flat on the floor where a row has them."""
     left = row.left_hand_headwards_m * mat.up + row.left_hand_out_m * mat.out
     right = row.right_hand_headwards_m * mat.up + row.right_hand_out_m * mat.out
-    return _on_palms(pose, floor + scale * np.array([left, right]) + HAND_REST * UP, mat)
-
-
-def _on_palms(pose: Pose, places: Array, mat: Mat) -> Pose:
-    """Both hands flat on the floor."""
+    places = mat.bed.pelvis * [1.0, 0.0, 1.0] + mat.skeleton.scale * np.array([left, right]) + HAND_REST * UP
     palms = np.stack([palm_on(UP, mat.bed.head_yaw, side) for side in ("left", "right")])
     return replace(pose, reach=places, reaching=np.ones(2), palms=palms, pressing=np.ones(2))
 
@@ -338,11 +358,11 @@ def _step(pose: Pose, index: int, seconds: tuple[float, float], end: Pose, mat: 
 def _on_the_knee(pose: Pose, times: Array, mat: Mat) -> Pose:
     """The left knee on its place, where the body goes down over it or up: hips turn round it.
 
-    `times` are those of hands and knees, of lying half on the hip, and of lying on the side (seconds).
+    `times` are those of lying half on the hip, and of lying on the side (seconds).
     """
-    hands, hip, side = times
+    hip, side = times
     at = np.arange(1, len(pose) + 1) / FPS
-    share = smooth((at - side) / (hip - side))[:, None] * ((at - hands) / (hip - hands) > HOLDS)[:, None]
+    share = smooth((at - side) / (hip - side))[:, None]
     joint = pose.pelvis + HIP * mat.skeleton.scale * rotations.rotate(pose.hips, np.array([1.0, 0.0, 0.0]))
     thigh = joint - mat.knees[0]
     length = np.linalg.norm(thigh, axis=1, keepdims=True)

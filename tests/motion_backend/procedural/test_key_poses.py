@@ -217,15 +217,15 @@ def test_a_bed_is_lain_on_as_its_rows_say() -> None:
 def test_the_floor_is_lain_on_as_its_rows_say() -> None:
     mat = Mat(FLOOR, SKELETON)
     stood = standing(mat.standing_point, 0.0, Bearing(), SKELETON)
-    one, over, both, hands, hip = LIE.floor_down.pose
+    one, over, both, back, hands, hip = LIE.floor_down.pose
     flat = replace(
-        LIE, floor_down=replace(LIE.floor_down, pose=(one, over, both, replace(hands, head_pitch_rad=0.0), hip))
+        LIE, floor_down=replace(LIE.floor_down, pose=(one, over, both, back, replace(hands, head_pitch_rad=0.0), hip))
     )
     heads = []
     for keys in (LIE, flat):
         knelt = kneel_down(stood, mat, Bearing(), keys.floor_down)
         way = lie_down_from_knees(knelt.at(len(knelt) - 1), mat, Lying(), keys)
-        heads.append(way.head[round(hands.wait_s * FPS) - 1, 0])
+        heads.append(way.head[round((back.wait_s + hands.wait_s) * FPS) - 1, 0])
     assert heads == pytest.approx([hands.head_pitch_rad, 0.0], abs=1e-9)
 
 

@@ -16,6 +16,7 @@ from small_home import DIRECTOR, after, contact, rise, small_home
 from motion_backend.backend_protocol import BodyState, PartKind
 from motion_backend.body.capsules import placed
 from motion_backend.body.joint_limits import limits_share
+from motion_backend.body.segment_masses import centres_of_mass
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.foot_skate import skate_ratio
 from motion_backend.metrics.joint_trajectories import Kinematics
@@ -211,6 +212,26 @@ def test_one_goes_down_to_the_floor_and_up_from_it_over_hands_and_knees(which: i
     assert (kneeling & (wrists[..., 1].max(axis=1) < 0.12)).any()
     one_down = high & (knees[:, 0, 1] < 0.09) & (knees[:, 1, 1] > 0.35)
     assert one_down.any()
+
+
+def test_hands_that_carry_stay_and_are_lifted_when_the_body_is_over_its_heels() -> None:
+    motion = up_again("lying still", "get up slowly")
+    frames = during(motion, PhaseKind.GETUP)
+    body = Kinematics.of(motion.part(frames.start, frames.stop))
+    left, right = (body.positions[:, INDEX[f"{side}_wrist"]] for side in ("left", "right"))
+    rising = np.arange(len(body.positions)) >= np.flatnonzero(body.positions[:, 0, 1] > 0.2)[0]
+    for hand in (left, right):
+        carries = rising & (hand[:, 1] < 0.065)
+        assert carries.sum() > 10
+        assert np.ptp(hand[carries][:, [0, 2]], axis=0).max() < 0.05
+    lifted = np.flatnonzero(rising & (right[:, 1] < 0.065))[-1]
+    centre = centres_of_mass(motion.skeleton, body.positions, body.world)[lifted]
+    knee, ankle = (
+        body.positions[lifted, [INDEX[f"{side}_{joint}"] for side in ("left", "right")]].mean(axis=0)
+        for joint in ("knee", "ankle")
+    )
+    back = (ankle - knee) * [1.0, 0.0, 1.0]
+    assert (centre - knee) @ back / np.linalg.norm(back) > -0.02
 
 
 def test_feet_do_not_slide_on_the_way_down_and_up() -> None:
