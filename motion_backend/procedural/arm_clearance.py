@@ -40,7 +40,7 @@ after one that did not."""
 NOWHERE: Final = 1e-9
 """A way out shorter than this has no direction (metres)."""
 SEEN, OUT = 0.003, 0.01
-"""An arm this deep in something goes out of it, and one that is no deeper than this after that is out: flesh gives (metres)."""
+"""An arm this deep in something goes out of it, and is out when it is no deeper than this: flesh gives (metres)."""
 LEAD: Final = 14
 """Frames before and after it in which an arm does."""
 STIFF: Final = np.array([0.05, 0.05, 0.05, 0.0004])

@@ -28,7 +28,7 @@ from motion_backend.procedural.takeover import eased_from, pose_of
 from motion_backend.procedural.touch.hand_rests import Hold
 from motion_backend.procedural.walk.stride import Stride
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import Skeleton, build_skeleton
+from motion_backend.skeleton import build_skeleton
 from scene_graphs.home import Home
 from scene_graphs.navigation.path_planner import NoPath
 
