@@ -117,7 +117,7 @@ def seated_legs(
         elif way in FREE_ASIDE:
             leg = _aside(leg, own, index, skeleton.scale)
         if leg.outwards > room[index].aside:
-            share = (room[index].aside / leg.outwards) ** 2
+            share = room[index].aside / leg.outwards
             leg = leg._replace(outwards=room[index].aside, knee_out=share * leg.knee_out)
         if hung and leg.foot != "free":
             up = seat.pelvis[1] - keys.hanging.below_seat_m * skeleton.scale
