@@ -80,8 +80,6 @@ class PhaseKind(StrEnum):
     """From lying to the edge of the bed, or from the floor to the knees."""
     STANDUP = "standup"
     WALK = "walk"
-    BACK_UP = "back up"
-    """From the place it turned round at to the seat."""
     EDGE = "edge"
     """Onto the edge of a bed, or onto the knees to lie on the floor."""
     SITDOWN = "sitdown"

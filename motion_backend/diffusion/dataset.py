@@ -45,7 +45,7 @@ ODD: Final = re.compile(
 )
 """Walks that are not plain, by style or caption: they are left out where only walking is learned."""
 PHASES: Final = {
-    PhaseKind.WALK: PartKind.WALK, PhaseKind.STAND: PartKind.TURN, PhaseKind.BACK_UP: PartKind.WALK,
+    PhaseKind.WALK: PartKind.WALK, PhaseKind.STAND: PartKind.TURN,
     PhaseKind.SITDOWN: PartKind.SIT, PhaseKind.EDGE: PartKind.SIT, PhaseKind.LIEDOWN: PartKind.LIE,
     PhaseKind.GETUP: PartKind.RISE, PhaseKind.STANDUP: PartKind.RISE, PhaseKind.TOUCH: PartKind.REACH,
 }  # fmt: skip

@@ -36,7 +36,7 @@ from motion_backend.diffusion.sampler import Sampler, Scale
 from motion_backend.diffusion.windows import THERE
 from motion_backend.metrics.contact_error import THRESHOLDS
 from motion_backend.mocap.foot_hold import held
-from motion_backend.motion import FPS, Motion, Note, Phase, PhaseKind, Skill, join
+from motion_backend.motion import FPS, Motion, Note, Phase, Skill, join
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 from motion_backend.stride_takeover import ARMS_HALF_LIFE, HALF_LIFE, joined
@@ -147,10 +147,7 @@ class PlanFollower:
         """Whose weights make a try: both know our own body's walks, one better in stride, one from other poses."""
         if not passage.is_periodic:
             return self.acting
-        first, second = self.walking, self.acting
-        if passage.phase is PhaseKind.BACK_UP:
-            first, second = second, first
-        return second if number == OTHER else first
+        return self.acting if number == OTHER else self.walking
 
 
 @dataclass

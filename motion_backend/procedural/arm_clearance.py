@@ -30,15 +30,17 @@ from motion_backend.procedural.touch.hand_captions import steadies, with_both_ha
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-ROUNDS: Final = 6
-"""So often it is looked again what a moved arm is in."""
+ROUNDS, BARREN = 6, 2
+"""So often it is looked again what a moved arm is in, and so often in a row in vain."""
+GAIN: Final = 0.95
+"""A round that leaves more than this of what arms were in was in vain."""
 HARDER, EASIER = 4.0, 4.0
 """How much more a frame's detour is damped after a round that left its arms deeper in something, and how much less
 after one that did not."""
 NOWHERE: Final = 1e-9
 """A way out shorter than this has no direction (metres)."""
-SEEN, OUT = 0.003, 0.005
-"""An arm this deep in something goes out of it, and one that is no deeper than this after that is out (metres)."""
+SEEN, OUT = 0.003, 0.01
+"""An arm this deep in something goes out of it, and is out when it is no deeper than this: flesh gives (metres)."""
 LEAD: Final = 14
 """Frames before and after it in which an arm does."""
 STIFF: Final = np.array([0.05, 0.05, 0.05, 0.0004])
@@ -191,13 +193,14 @@ def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
         return pose
     at, near = whole.about(seen)
     free, damped = bool(at[-1] == len(pose) - 1), np.ones(len(at))
-    best = near.on(np.zeros((2, len(at), 4)))
+    best, barren = near.on(np.zeros((2, len(at), 4))), 0
     for _ in range(ROUNDS):
-        if best.deepest < OUT:
+        if best.deepest < OUT or barren == BARREN:
             break
         tried = near.on(best.detours + _step(near, best, damped, free))
         worse = uniform_filter1d(tried.missing - best.missing, 2 * round(SPREAD) + 1, mode="nearest") > 0
         damped = np.where(worse, damped * HARDER, np.maximum(damped / EASIER, 1.0))
+        barren = 0 if tried.missing.sum() < GAIN * best.missing.sum() else barren + 1
         if tried.missing.sum() < best.missing.sum():
             best = tried
     handles = {}
@@ -274,12 +277,13 @@ class _Rows(NamedTuple):
 
 def _rows(arm: Arm, contacts: Contacts) -> _Rows:
     """What an arm of T frames is in, and the strain of its shoulder."""
-    beyond = _strain(arm, arm.limb) - STRAINED
+    strains = _strain(arm, arm.limb)
+    beyond = strains - STRAINED
     strained = np.flatnonzero(beyond > 0)
     at = np.union1d(contacts.frames, strained)
     if not len(at):
         return _Rows(at, np.zeros((0, 4)), np.zeros(0))
-    gone, strain = _derivatives(arm.part(at))
+    gone, strain = _derivatives(arm.part(at), strains[at])
     far = np.maximum(rotations.length(contacts.out), NOWHERE)
     here = np.searchsorted(at, contacts.frames)
     rows = np.einsum("mc,mcji,mi->mj", contacts.of, gone[here], contacts.out / far)
@@ -291,9 +295,9 @@ def _rows(arm: Arm, contacts: Contacts) -> _Rows:
     )
 
 
-def _derivatives(arm: Arm) -> tuple[Array, Array]:
+def _derivatives(arm: Arm, strains: Array) -> tuple[Array, Array]:
     """How elbow, wrist and the hand's direction (T, 3, 4, 3), and the strain of the shoulder (T, 4), go with a wrist
-    that goes along the axes and with an elbow that swings."""
+    that goes along the axes and with an elbow that swings; `strains` (T,) is what it is now."""
     moves = np.concatenate([np.eye(3), np.zeros((1, 3))])[:, None]
     pole = rotations.cross(rotations.normalize(arm.way), arm.limb.hinge)
     swung = _about(rotations.normalize(arm.way), np.full((1, 1), STEP), pole)
@@ -301,7 +305,7 @@ def _derivatives(arm: Arm) -> tuple[Array, Array]:
     elbow = arm.lengths[0] * (tried.upper - arm.limb.upper)
     fore = tried.lower - arm.limb.lower
     gone = np.stack([elbow, elbow + arm.lengths[1] * fore, fore * (1 - arm.pressing)[:, None]])
-    strain = _strain(arm, tried) - _strain(arm, arm.limb)
+    strain = _strain(arm, tried) - strains
     return np.moveaxis(gone, (0, 1), (1, 2)) / STEP, strain.T / STEP
 
 

@@ -21,14 +21,14 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.gaze import gazing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
-from motion_backend.procedural.pose_solver import head_clear, hips_within, released, solve
+from motion_backend.procedural.pose_solver import all_released, head_clear, hips_within, released, solve
 from motion_backend.procedural.skill_controller import perform
 from motion_backend.procedural.tail import carried_on, frames_kept_back
 from motion_backend.procedural.takeover import eased_from, pose_of
 from motion_backend.procedural.touch.hand_rests import Hold
 from motion_backend.procedural.walk.stride import Stride
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import Skeleton, build_skeleton
+from motion_backend.skeleton import build_skeleton
 from scene_graphs.home import Home
 from scene_graphs.navigation.path_planner import NoPath
 
@@ -146,19 +146,13 @@ def _to_motion(body: Body, part: Part) -> Motion:
         notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )
     kept = frames_kept_back(part, body.upcoming, whole) if body.stride is None else 0
-    body.tail = _freed(pose.at(slice(len(pose) - kept - 1, None)), body.skeleton) if kept else None
+    body.tail = all_released(pose.at(slice(len(pose) - kept - 1, None)), body.skeleton) if kept else None
     return whole.part(0, len(pose) - kept)
 
 
 def _filling(phases: tuple[Phase, ...], frames: int) -> tuple[Phase, ...]:
     """Phases of so many frames: the last one goes on to their end."""
     return (*phases[:-1], replace(phases[-1], stop=frames))
-
-
-def _freed(frames: Pose, skeleton: Skeleton) -> Pose:
-    """Frames whose wrists are held from the chest alone."""
-    freed = [released(frames.at(index), skeleton).repeat(1) for index in range(len(frames))]
-    return concatenate(freed)
 
 
 def _nothing(body: Body, part: Part) -> Motion:

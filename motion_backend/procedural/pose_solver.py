@@ -151,13 +151,17 @@ def _solve_leg(local: Array, pose: Pose, skeleton: Skeleton, index: int, name: s
     local[:, INDEX[f"{name}_foot"]] = rotations.axis_to_quat("x", -pose.toes[:, index])
 
 
-def released(pose: Pose, skeleton: Skeleton) -> Pose:
-    """The same single pose with its wrists held from the chest alone, no longer tied to places in the world."""
-    one = pose.repeat(1)
-    frame = chest_frame(one, skeleton)
+def all_released(pose: Pose, skeleton: Skeleton) -> Pose:
+    """T frames with their wrists held from the chest alone, no longer tied to places in the world."""
+    frame = chest_frame(pose, skeleton)
     arms = pose.arms.copy()
     for index in (0, 1):
-        arm = Arm.of(one, skeleton, index, frame)
-        local = arm.in_chest(arm.wrist - frame[1])[0] - hanging_from(skeleton, index)
-        arms[index] = local / sum(arm.lengths)
-    return replace(pose, arms=arms, reaching=np.zeros(2))
+        arm = Arm.of(pose, skeleton, index, frame)
+        local = arm.in_chest(arm.wrist - frame[1]) - hanging_from(skeleton, index)
+        arms[:, index] = local / sum(arm.lengths)
+    return replace(pose, arms=arms, reaching=np.zeros_like(pose.reaching))
+
+
+def released(pose: Pose, skeleton: Skeleton) -> Pose:
+    """A single pose so."""
+    return all_released(pose.repeat(1), skeleton).at(0)

@@ -38,9 +38,9 @@ LEAVING = {
 }  # fmt: skip
 COMING = {
     Skill.LOCO: (PhaseKind.WALK,),
-    Skill.SITDOWN: (PhaseKind.WALK, PhaseKind.BACK_UP, PhaseKind.SITDOWN),
-    Skill.LIEDOWN: (PhaseKind.WALK, PhaseKind.BACK_UP, PhaseKind.EDGE, PhaseKind.LIEDOWN),
-    Skill.TOUCH: (PhaseKind.WALK, PhaseKind.BACK_UP, PhaseKind.TOUCH),
+    Skill.SITDOWN: (PhaseKind.WALK, PhaseKind.SITDOWN),
+    Skill.LIEDOWN: (PhaseKind.WALK, PhaseKind.EDGE, PhaseKind.LIEDOWN),
+    Skill.TOUCH: (PhaseKind.WALK, PhaseKind.TOUCH),
     Skill.STANDUP: (PhaseKind.STAND,),
     Skill.GETUP: (PhaseKind.STAND,),
 }

@@ -111,13 +111,14 @@ def seated_legs(
     hung = feet_hang(seat, skeleton.scale)
     solved: list[tuple[Array, Array, Array, float]] = []
     for index, way in enumerate(ways):
-        leg = _leg(keys.of(way), seat, skeleton, room[index].ahead)
+        ahead = _room_ahead(keys.of(way), index, room)
+        leg = _leg(keys.of(way), seat, skeleton, ahead)
         if way in FREE_TO_STAND:
-            leg = _elsewhere(leg, own, index, seat, skeleton.scale, room[index].ahead)
+            leg = _elsewhere(leg, own, index, seat, skeleton.scale, ahead)
         elif way in FREE_ASIDE:
             leg = _aside(leg, own, index, skeleton.scale)
         if leg.outwards > room[index].aside:
-            share = (room[index].aside / leg.outwards) ** 2
+            share = room[index].aside / leg.outwards
             leg = leg._replace(outwards=room[index].aside, knee_out=share * leg.knee_out)
         if hung and leg.foot != "free":
             up = seat.pelvis[1] - keys.hanging.below_seat_m * skeleton.scale
@@ -126,6 +127,11 @@ def seated_legs(
         solved.append(_placed(leg, index, seat, skeleton, solved))
     ankles, feet, knees, planted = (np.stack(values) for values in zip(*solved, strict=True))
     return Legs(ankles, feet, knees, planted)
+
+
+def _room_ahead(row: SeatedLeg, index: int, room: tuple[Room, Room]) -> float:
+    """How far a foot may go: one that crosses to the other side finds what is there, too."""
+    return room[index].ahead if row.outwards_m >= 0 else min(one.ahead for one in room)
 
 
 def _elsewhere(leg: _Leg, own: OwnSeat, index: int, seat: Seat, scale: float, room: float) -> _Leg:
@@ -190,7 +196,7 @@ def _ahead(row: SeatedLeg, seat: Seat, skeleton: Skeleton, room: float) -> float
         case "held":
             return max(seat.edge + PAST_EDGE, ahead)
         case _:
-            return ahead
+            return min(ahead, max(room, shin)) if row.beyond_m else ahead
 
 
 def _placed(
@@ -245,8 +251,12 @@ def bends_a_leg(seat: Seat, legs: str, skeleton: Skeleton, room: tuple[Room, Roo
     least = straight_reach(seat, scale) - STRETCH_STEP
     rows = [keys.of(way) for way in WAYS[legs]]
     return any(
-        straight and (feet_hang(seat, scale) or _ahead(row, seat, skeleton, one.ahead) - row.beyond_m * scale < least)
-        for straight, row, one in zip(is_to_be_straight(legs), rows, room, strict=True)
+        straight
+        and (
+            feet_hang(seat, scale)
+            or _ahead(row, seat, skeleton, _room_ahead(row, index, room)) - row.beyond_m * scale < least
+        )
+        for index, (straight, row) in enumerate(zip(is_to_be_straight(legs), rows, strict=True))
     )
 
 

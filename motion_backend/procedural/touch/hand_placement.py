@@ -70,7 +70,7 @@ def gripped(held: Pose, index: int, angle: Array, normal: Array, row: Rotate) ->
     turn, side = rotations.rotvec_to_quat(angle[:, None] * normal), (1.0, -1.0)[index]
     reach, palms, elbows = held.reach.copy(), held.palms.copy(), held.elbows.copy()
     middle = rotations.rotate(palms[:, index], np.array([side * row.grip_m, 0.0, 0.0]))
-    reach[:, index] += middle - rotations.rotate(turn, middle)
+    reach[:, index] += middle - rotations.rotate(turn, middle) + row.lift_per_rad * np.abs(angle)[:, None] * normal
     palms[:, index] = rotations.compose(turn, palms[:, index])
     elbows[:, index] += angle[:, None] * np.array([row.elbow_left_ratio, row.elbow_up_ratio * side, 0.0])
     return replace(held, reach=reach, palms=palms, elbows=elbows)

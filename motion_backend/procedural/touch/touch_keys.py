@@ -182,6 +182,8 @@ class Rotate:
     turn_hz: float
     grip_m: float
     """From the wrist to the middle of what it turns about."""
+    lift_per_rad: float
+    """How far the hand comes off what it lies on for every radian of the turn (metres)."""
     elbow_left_ratio: float
     """How the elbow's direction changes for every radian of the turn."""
     elbow_up_ratio: float

@@ -17,7 +17,7 @@ def test_passages_of_one_action_begin_where_those_of_the_one_before_end() -> Non
         replace(standing_still(frames), phases=tuple(Phase(kind, start, stop) for kind, start, stop in phases))
         for frames, phases in (
             (30, [(PhaseKind.WALK, 0, 20), (PhaseKind.STAND, 20, 30)]),
-            (12, [(PhaseKind.BACK_UP, 0, 0), (PhaseKind.SITDOWN, 0, 12)]),
+            (12, [(PhaseKind.WALK, 0, 0), (PhaseKind.SITDOWN, 0, 12)]),
         )
     )
     actions = [Action(skill, "x", Emotion.NEUTRAL) for skill in (Skill.LOCO, Skill.SITDOWN)]
