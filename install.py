@@ -48,9 +48,13 @@ NO_MATTER = (
 )
 """What pip is told that changes nothing of what is installed."""
 COMPILE = (
+    "print('Compiling commands', flush=True);"
     "import planner_service.api.app, planner_service.jobs.worker, planner_service.cli.story, pysbd, lemminflect, torch;"
+    "print('Compiling search', flush=True);"
     "from scene_graphs.layout_library import compile_search; compile_search();"
+    "print('Compiling rooms', flush=True);"
     "from scene_graphs.geometry.planar_faces import compile_faces; compile_faces();"
+    "print('Compiling film', flush=True);"
     "from motion_backend.rendering.film_frames import compile_film; compile_film()"
 )
 OFFLINE = r"Connection|timed out|Name or service|Proxy|SSLError|HTTP error|Retrying|No matching distribution"
@@ -153,10 +157,14 @@ def phrase(said: str, downloads: Path, before: int) -> str:
         there = set(re.findall(r"^ *Downloaded (\S+)", said, re.MULTILINE))
         left = [name for name in coming if name not in there]
         return f", downloading {', '.join(left[:3])}{' and others' * (len(left) > 3)}" if left else ", installing"
-    steps = re.findall(r"^ *(Downloading|Collecting|Obtaining|Processing) (\S+)(?: \((.+)\)$)?", said, re.MULTILINE)
+    steps = re.findall(
+        r"^ *(Downloading|Collecting|Obtaining|Processing|Compiling) (\S+)(?: \((.+)\)$)?", said, re.MULTILINE
+    )
     verb, what, size = steps[-1] if steps else ("", "", "")
     name = unquote(what).rpartition("/")[2]
     short = "-".join(name.split("-")[:2]) if name.endswith(".whl") else re.split(r"[<>=!~;\[]", name)[0]
+    if verb == "Compiling":
+        return f", {what}"
     if verb != "Downloading":
         return f", looking at {short}" if verb else ""
     if size.endswith("MB"):

@@ -38,6 +38,8 @@ class Catalogue:
 
     minor_groups: frozenset[str]
     """Objects "with minimal interaction possibilities, such as lamps or vases" (SIMS 3.2)."""
+    fronted: frozenset[str]
+    """Classes and categories that are opened or looked at from one side."""
     group_of_class: dict[str, str]
     """The tree that sets costs. Affordances are a property of their own and never decide a class."""
     categories: dict[str, Category]
@@ -53,6 +55,7 @@ class Catalogue:
     def __post_init__(self) -> None:
         named = {*self.categories, *self.kinds}
         require_known("minor_groups", self.minor_groups, self.group_of_class.values())
+        require_known("fronted", self.fronted, {*self.group_of_class, *self.categories})
         for category, entry in self.categories.items():
             require_known(f"categories.{category}.of_class", [entry.of_class], self.group_of_class)
             if min(entry.size_m) <= 0:
@@ -139,6 +142,11 @@ def group_of(category: str) -> str:
     """The group, outside which nothing is ever substituted; an unknown word is a group of its own."""
     class_ = class_of(category)
     return catalogue().group_of_class.get(class_, class_)
+
+
+def has_front(category: str) -> bool:
+    """Whether it is opened or looked at from one side: the front of its `Placed`."""
+    return not {canonical(category), class_of(category)}.isdisjoint(catalogue().fronted)
 
 
 def is_minor(category: str) -> bool:

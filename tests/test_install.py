@@ -102,6 +102,7 @@ def test_elsewhere_and_where_an_index_is_asked_for_nothing_is_probed(
 
 def test_what_pip_says_becomes_a_few_words(tmp_path: Path, venv: Path) -> None:
     said = "Looking in indexes: https://x.example\nCollecting torch==2.13.0\n"
+    assert install.phrase("Compiling search\nCompiling film\n", tmp_path, 1) == ", film"
     assert install.phrase("", tmp_path, 1) == ""
     assert install.phrase(said, tmp_path, 1) == ", looking at torch"
     said += "  Downloading https://x.example/torch-2.13.0%2Bcpu-cp311-cp311-linux_x86_64.whl (191.8 MB)\n"

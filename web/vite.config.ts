@@ -12,6 +12,8 @@ export default defineConfig({
     // Files stay files: a page that may only load from its own origin needs no data: addresses.
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 800,
+    // How long plug-ins took is no warning to who only serves the page.
+    rolldownOptions: { checks: { bundlerTimings: false } },
   },
   server: { proxy: { "/v1": SERVICE, "/session": SERVICE, "/healthz": SERVICE, "/readyz": SERVICE } },
 });

@@ -30,7 +30,11 @@ def mcp(
     key: Annotated[str, typer.Option(help="Its key, where it needs one (SIMS_KEY).", envvar="SIMS_KEY")] = "",
     out: Annotated[Path, typer.Option(help="Folder that fetched files go to.")] = Path("out"),
 ) -> None:
-    """Offer plan, make, follow and fetch to an agent, over standard input and output."""
+    """Offer the service to an agent as tools, over standard input and output.
+
+    plan (a theme to its script), make (begins a story), follow (waits for it), fetch (its film or another file of it).
+    How an agent is told to run it: docs/commands.md.
+    """
     check_extra()
     from planner_service.client import AsyncClient
     from planner_service.mcp_server import serve_tools

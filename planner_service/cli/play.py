@@ -12,14 +12,14 @@ import typer
 from pydantic import ValidationError
 from rich.console import Console
 
-from motion_backend.motion import Character, Skill, moment
+from motion_backend.motion import Character, Emotion, Skill, moment
 from planner_service.cli.cast_command import CharacterOption, character_given
 from planner_service.cli.story import Extra, check_output, produce
 from planner_service.library.library import open_shelves
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
 from planner_service.scripts.caption_actions import look_of
-from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
-from planner_service.scripts.captions import captions, synonyms
+from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as, usual
+from planner_service.scripts.captions import Vocabulary, captions, synonyms
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, legible
 from planner_service.settings import read_settings
 from planner_service.tasks.task_plan import MAX_KEYFRAMES
@@ -29,6 +29,10 @@ MAX_BYTES: Final = 1 << 20
 """Of a script's file."""
 MAX_FAULTS: Final = 20
 """That are told of one file."""
+SUGGESTED: Final = 3
+"""Words at most, in place of one that is not known."""
+MISSPELT: Final = 0.8
+"""Share of its letters that a misspelt caption has in common with the one that was meant."""
 NAMES: Final = ("title", "summary")
 """Under which it has what it is called."""
 MAX_TITLE: Final = 200
@@ -49,7 +53,9 @@ def play(
         float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
     ] = 1.70,
     character: CharacterOption = "",
-    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
+    film: Annotated[
+        bool, typer.Option("--film", help="Write film.mp4 too; a minute of it takes about twenty seconds.")
+    ] = False,
     usd: Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")] = False,
 ) -> None:
     """Act out a script of your own: nothing is planned, a home is found for it unless one is given."""
@@ -153,10 +159,21 @@ def unknown_captions(keyframes: Sequence[Keyframe], words: Words = hashed_words)
             continue
         done = performed_as(keyframe.skill, caption, keyframe.mood, words)
         how = "is read word by word" if done == caption else f"is unknown to the body, which does {done!r} instead"
-        told.append(f"{moment(number)}, caption: {caption!r} {how}{_nearest(caption, rows)}")
+        told.append(f"{moment(number)}, caption: {caption!r} {how}{_perhaps(_meant(keyframe, caption, rows, words()))}")
     return told
 
 
+def _meant(keyframe: Keyframe, caption: str, rows: Sequence[str], words: Vocabulary) -> list[str]:
+    """Known captions that may be meant: misspelt ones, those near in meaning, then what the mood usually does."""
+    misspelt = get_close_matches(caption, list(dict.fromkeys(rows)), n=1, cutoff=MISSPELT)
+    moody = [] if keyframe.mood is Emotion.NEUTRAL else [usual(keyframe.skill, keyframe.mood, caption)]
+    return [one for one in dict.fromkeys([*misspelt, *words.near(keyframe.skill, caption), *moody]) if one in rows]
+
+
 def _nearest(word: str, known: Sequence[str]) -> str:
-    found = get_close_matches(word, list(dict.fromkeys(known)), n=3, cutoff=0.4)
-    return f"; perhaps {', '.join(map(repr, found))}" if found else ""
+    """Known words that are spelt much like another."""
+    return _perhaps(get_close_matches(word, list(dict.fromkeys(known)), n=SUGGESTED, cutoff=0.4))
+
+
+def _perhaps(found: Sequence[str]) -> str:
+    return f"; perhaps {', '.join(map(repr, found[:SUGGESTED]))}" if found else ""

@@ -83,7 +83,9 @@ def story(
         float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
     ] = 1.70,
     character: CharacterOption = "",
-    film: Annotated[bool, typer.Option("--film", help="Write film.mp4 too, in a minute or two.")] = False,
+    film: Annotated[
+        bool, typer.Option("--film", help="Write film.mp4 too; a minute of it takes about twenty seconds.")
+    ] = False,
     usd: Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")] = False,
     model: ModelOption = None,
 ) -> None:

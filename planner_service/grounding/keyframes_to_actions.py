@@ -33,7 +33,7 @@ from planner_service.scripts.script_repair import free_hand, hand_of
 from planner_service.themes.opening_words import Kind, comes_in, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
 from scene_graphs.errors import UserError
-from scene_graphs.furniture import display_name
+from scene_graphs.furniture import display_name, has_front
 from scene_graphs.home import Home
 from scene_graphs.layout import Placed
 from scene_graphs.navigation.path_planner import Walkable
@@ -54,6 +54,8 @@ FLOOR_TRIES: Final = 120
 """Places on the floor that are looked at: half of them anywhere in the room, the others beside the best of those."""
 BESIDE_BEST, TURNED_ASIDE = 0.15, 0.3
 """Deviations of those from it: metres to each side, radians."""
+FRONT: Final = 0.1
+"""How far one who stands before a front may be turned from it (radians)."""
 A_STEP: Final = 0.9
 """A place to stand so near to where the body stands is not walked round a thing for (metres)."""
 
@@ -310,6 +312,7 @@ class _Stage:
         found = next(filter(None, suited), level[0] or level[1] or found)
         # Fronts before tops of what is taller than the chest: an arm does not go over an edge by itself.
         found = [s for s in found if s.normal[1] < 0.5 or s.point[1] < 1.2] or found
+        found = [s for s in found if self._is_before_front(s)] or found
         if wanted == "high":
             found = self._elbows.roomiest(found)
             found.sort(key=lambda s: -s.point[1])
@@ -320,6 +323,11 @@ class _Stage:
         # The body may come back to a piece: it need not touch the very same place again.
         found = self._elbows.roomiest(found)
         return found[int(self.rng.integers(min(len(found), 3)))]
+
+    def _is_before_front(self, spot: Spot) -> bool:
+        """Whether one stands where the doors, drawers or shelves of a piece are."""
+        placed = self.home.object(spot.object_id)
+        return has_front(placed.category) and cos(spot.facing - placed.yaw) < -cos(FRONT)
 
     def _is_here(self, spot: Spot) -> bool:
         """Whether the body is there, or a step aside: nobody walks round a thing to touch it again."""

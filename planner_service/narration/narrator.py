@@ -32,6 +32,8 @@ _FEWEST_LOCATED: Final = 0.5
 """Share of the beats that must stand in the theme for it to be told; else they are told one after the other."""
 _MOST_OF_ONE: Final = 2
 """Keyframes, those that only lead to others aside, which the words of one beat tell."""
+MAX_TITLE_WORDS: Final = 6
+"""Of one made for a script that has none."""
 _PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
 Rows = Sequence[tuple[int, PlannedKeyframe]]
 
@@ -45,7 +47,24 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
         return page(title, _Teller(script, voice, wording).sentences())
     told = page("", sentences(wording, list(enumerate(script.keyframes)), named=False))
     # Keyframes of one's own are called what they were given as.
-    return replace(told, title=(title if script.beats else headline(script.theme)) or headline(told.text))
+    return replace(told, title=(title if script.beats else headline(script.theme)) or _title_of(script, wording))
+
+
+def _title_of(script: LongScript, wording: Wording) -> str:
+    """A title after the mood that keyframes have most, and where what is touched or rested on most is; "" of none."""
+    if not script.keyframes:
+        return ""
+    moods = [one.mood.value for one in reversed(script.keyframes)]
+    used = [(at, one) for at, one in enumerate(script.keyframes) if not (connects(one) or one.on_floor)]
+    pieces = [one.piece for _, one in used]
+    plain = title_of("", max(moods, key=lambda mood: (mood != "neutral") * moods.count(mood)))
+    if not used:
+        return plain
+    at, one = used[pieces.index(max(pieces, key=pieces.count))]
+    words = wording.on(at, one) if one.skill in RESTS else f"by {wording.the(at, one)}"
+    where, _, name = words.partition(" the ")
+    title = f"{plain.removesuffix(' at Home')} {where} the".split()
+    return " ".join([*title, *name.title().split()[-(MAX_TITLE_WORDS - len(title)) :]])
 
 
 def _mood_of(script: LongScript) -> str:

@@ -13,6 +13,7 @@ from importlib import resources
 from typing import Any, Final, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend.language.sentence_encoder import SentenceEncoder, Vectors
 from motion_backend.motion import Skill
@@ -86,19 +87,36 @@ class Vocabulary:
         a skill without captions or without one whose sides agree.
         """
         says = self._says.get(skill, [])
-        allowed = [place for place, (_, known) in enumerate(says) if agree(caption, known)]
+        allowed = self._allowed(skill, caption)
         if not allowed:
             raise ValueError(f"caption: no caption of {skill} has the sides of {caption!r}; add one to the vocabulary")
         plain = _plain(caption)
         for place in allowed:
             if _plain(says[place][0]) == plain:
                 return says[place][1], 1.0
-        if skill not in self._vectors:
-            self._vectors[skill] = self._encoder.encode([text for text, _ in says])
-        asked = self._encoder.encode([caption])[0].astype(np.float64)
-        scores = np.round(self._vectors[skill][allowed].astype(np.float64) @ asked, 4)
+        scores = self._scores(skill, caption, allowed)
         best = int(np.argmax(scores))
         return says[allowed[best]][1], float(scores[best])
+
+    def near(self, skill: Skill, caption: str) -> list[str]:
+        """The known captions of a skill that may stand for another, the nearest in meaning first; none where its sides
+        are those of no caption."""
+        allowed = self._allowed(skill, caption)
+        scores = self._scores(skill, caption, allowed) if allowed else np.zeros(0)
+        order = [int(place) for place in np.argsort(-scores, kind="stable") if scores[place] >= self.least]
+        return list(dict.fromkeys(self._says[skill][allowed[place]][1] for place in order))
+
+    def _allowed(self, skill: Skill, caption: str) -> list[int]:
+        """Places of what is said of a skill whose sides agree with a caption's."""
+        return [place for place, (_, known) in enumerate(self._says.get(skill, [])) if agree(caption, known)]
+
+    def _scores(self, skill: Skill, caption: str, places: Sequence[int]) -> NDArray[np.float64]:
+        """How near a caption is to what is said there (cosine). (places,)."""
+        if skill not in self._vectors:
+            self._vectors[skill] = self._encoder.encode([text for text, _ in self._says[skill]])
+        asked = self._encoder.encode([caption])[0].astype(np.float64)
+        scores: NDArray[np.float64] = np.round(self._vectors[skill][places].astype(np.float64) @ asked, 4)
+        return scores
 
 
 def _plain(text: str) -> tuple[str, ...]:

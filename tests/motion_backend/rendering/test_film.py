@@ -30,7 +30,7 @@ from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
 from motion_backend.skeleton import INDEX
 from planner_service.narration.told import Span, Told
-from planner_service.output.film import DONE, subtitles
+from planner_service.output.film_words import DONE, subtitles
 
 SIZE = (96, 54)
 
@@ -220,7 +220,7 @@ def test_a_sentence_that_tells_of_two_keyframes_is_shown_in_two_parts_and_none_s
     spans.append(Span(text.index("slept"), text.index("slept") + 5, (2,)))
     told = Told("", text, tuple(spans))
     shown = subtitles(told, [(0, 90), (90, 600), (600, 1500)], 30)
-    assert [line.text for line in shown] == ["He sat down,", "and read a book.", "He slept."]
+    assert [line.text for line in shown] == ["He sat down…", "and read a book.", "He slept."]
     assert [line.start for line in shown] == [0, 111, 630]
     assert max(line.stop - line.start for line in shown) <= 7 * 30
     together = subtitles(told, [(0, 20), (20, 600), (600, 1500)], 30)

@@ -84,6 +84,18 @@ def test_a_caption_that_is_read_as_another_is_said_before_anything_is_made(tmp_p
     assert second.startswith("moment 2, caption: 'moonwalk backwards' is read word by word")
 
 
+def test_what_is_suggested_means_what_was_asked_for_or_is_what_the_mood_does() -> None:
+    walk = {"skill": Skill.LOCO, "furniture": "floor"}
+    drunk, plain = unknown_captions(
+        [
+            Keyframe(caption=caption, emotion=mood, **walk)
+            for caption, mood in (("xyzzy", "drunk"), ("xyzzy", "neutral"))
+        ]
+    )
+    assert drunk.endswith("; perhaps 'walking drunkenly'")
+    assert "perhaps" not in plain
+
+
 def test_no_caption_is_suggested_twice() -> None:
     for skill, rows in captions().items():
         asked = [Keyframe(skill=Skill(skill), caption=f"{row} x", furniture="sofa", emotion="neutral") for row in rows]

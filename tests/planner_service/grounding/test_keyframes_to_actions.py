@@ -22,6 +22,7 @@ from planner_service.grounding.keyframes_to_actions import (
 )
 from planner_service.scripts.script import Keyframe
 from scene_graphs.affordances.affordances import spots
+from scene_graphs.furniture import catalogue
 from scene_graphs.home import Home, Room, home_from_layouts
 from scene_graphs.layout import Layout, Placed
 from scene_graphs.navigation.path_planner import Walkable
@@ -242,3 +243,31 @@ def test_nobody_walks_round_a_thing_to_touch_it_again(between: tuple[tuple[str, 
     last = act(keyframes, places, home, 0, kept=[Kept(first), *[None] * (len(rows) - 1)])[-1]
     assert last.spot is not None
     assert (np.hypot(*np.subtract(last.spot.standing, narrow.standing)) < 1.0) == stays
+
+
+def _before_front(action: Action, home: Home) -> bool:
+    """Whether one stands before the front of what one touches and looks at it."""
+    assert action.spot is not None
+    placed = home.object(action.spot.object_id)
+    x, _, z = placed.to_local((action.spot.standing[0], 0.0, action.spot.standing[1]))
+    return bool(z > placed.size[2] / 2 and abs(x) <= placed.size[0] / 2 and abs(action.spot.point[1]) < 2.2)
+
+
+@pytest.mark.parametrize("category", ["cabinet", "wardrobe", "refrigerator", "dresser", "nightstand", "bookshelf"])
+@pytest.mark.parametrize("yaw", [0.0, 1.2, np.pi / 2, np.pi, -2.0])
+def test_hands_go_to_the_front_of_what_has_one_wherever_one_comes_from(category: str, yaw: float) -> None:
+    size = catalogue().categories[category].size_m
+    piece = Placed("piece", category, (3.0, 0.0, 2.5), size, yaw)
+    home = home_from_layouts([replace(ROOM, objects=(piece, *ROOM.objects[2:]))], 0)
+    for seed, caption in enumerate(("touch medium height", "touch low height with the left hand", "slam it shut")):
+        *_, touch = grounded(("loco", "walk", None), ("touch", caption, "piece"), home=home, seed=seed)
+        assert _before_front(touch, home), (caption, touch.spot)
+
+
+def test_what_has_its_front_to_the_wall_is_touched_where_one_gets_to() -> None:
+    piece = Placed("piece", "cabinet", (3.0, 0.0, 4.75), (1.1, 1.5, 0.42), 0.0)
+    home = home_from_layouts([replace(ROOM, objects=(piece,))], 0)
+    (touch,) = grounded(("touch", "touch medium height", "piece"), home=home)
+    assert touch.spot is not None
+    assert can_stand(Walkable(home), Walkable(home).random_point(np.random.default_rng(0), 0), touch.spot)
+    assert not _before_front(touch, home)

@@ -1,4 +1,4 @@
-"""What keyframes of one's own are called: what they were given as, else what is told first."""
+"""What keyframes of one's own are called: what they were given as, else by mood and place."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from motion_backend.motion import Character, Skill
 from planner_service.composition.compose import script_of
 from planner_service.narration.narrator import narrate
-from planner_service.narration.story_words import MAX_TITLE, headline
+from planner_service.narration.story_words import MAX_TITLE, headline, title_of
 from planner_service.scripts.script import Keyframe
 
 SIT = Keyframe(skill=Skill.SITDOWN, emotion="sad", caption="sitting still", furniture="sofa")
@@ -39,8 +39,24 @@ def test_a_headline_ends_where_something_does(text: str, said: str) -> None:
     assert not headline(text).endswith((",", ".", " and"))
 
 
-def test_a_script_of_ones_own_is_called_what_it_calls_itself_else_by_its_first_words() -> None:
+def test_a_script_of_ones_own_is_called_what_it_calls_itself() -> None:
     assert narrate(script_of([SIT], "My evening"), Character()).title == "My evening"
-    told = narrate(script_of([SIT], ""), Character())
-    assert told.title
-    assert told.text.casefold().startswith(told.title.rstrip("…").casefold())
+
+
+@pytest.mark.parametrize("furniture", ["sofa", "armchair", "kitchen counter", "tv stand", "floor", "wardrobe 2"])
+@pytest.mark.parametrize("mood", ["neutral", "sad", "angry", "drunk"])
+def test_a_script_that_has_no_name_is_called_after_its_mood_and_where_it_plays(furniture: str, mood: str) -> None:
+    can_sit = furniture in ("sofa", "armchair", "floor")
+    done = Keyframe(skill=Skill.SITDOWN if can_sit else Skill.TOUCH, caption="x", furniture=furniture, emotion=mood)
+    told = narrate(script_of([done], ""), Character())
+    words = told.title.split()
+    assert 2 < len(words) <= 6
+    assert not told.text.startswith(told.title)
+    assert title_of("", mood).removesuffix(" at Home") in told.title
+    assert furniture == "floor" or words[-1].lower() in furniture
+
+
+def test_the_mood_of_a_nameless_script_is_that_of_most_of_it() -> None:
+    rows = [("sitdown", "sad", "sofa"), ("touch", "angry", "bookshelf"), ("loco", "sad", "floor")]
+    keyframes = [Keyframe(skill=Skill(s), emotion=mood, caption="x", furniture=there) for s, mood, there in rows]
+    assert narrate(script_of(keyframes, ""), Character()).title == "A Sad Day on the Sofa"

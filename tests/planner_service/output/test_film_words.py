@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import accumulate, pairwise
+
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from motion_backend.motion import FPS
 from planner_service.narration.told import Span, Told
-from planner_service.output.film import LETTERS, READ, Filmed, subtitles
+from planner_service.output.film import Filmed
+from planner_service.output.film_words import LETTERS, READ, subtitles
 from planner_service.pipeline import Pipeline, StoryRequest
 
 
@@ -27,3 +33,90 @@ def test_a_film_is_of_the_home_the_motion_and_the_words_of_its_story() -> None:
     filmed = Filmed.of(story)
     assert (filmed.home, filmed.motion, filmed.told) == (story.planned.home, story.motion, story.planned.told)
     assert (filmed.segments, filmed.role) == (story.segments, story.role)
+
+
+PARTS = st.lists(
+    st.tuples(
+        st.text("abcdefg", min_size=1, max_size=30),
+        st.sampled_from([" ", ", ", " and ", ", and ", ". ", " who had gone, ", ", when it rained, ", '." ']),
+        st.booleans(),
+        st.booleans(),
+    ),
+    min_size=1,
+    max_size=14,
+)
+
+
+def told_of(parts: list[tuple[str, str, bool, bool]]) -> Told:
+    """Words with what joins them; some tell a keyframe, some are not seen."""
+    text, spans, thoughts = "", list[Span](), list[Span]()
+    for words, joint, tells, thought in parts:
+        place = Span(len(text), len(text) + len(words), ())
+        spans += [replace(place, keyframes=(len(spans),))] if tells and not thought else []
+        thoughts += [place] if thought else []
+        text += words + joint
+    return Told("", text.rstrip(" ,") + ".", tuple(spans), tuple(thoughts))
+
+
+def spans_of(text: str, *words: str) -> tuple[Span, ...]:
+    """Where words stand that tell one keyframe after the other."""
+    return tuple(Span(text.index(word), text.index(word) + len(word), (k,)) for k, word in enumerate(words))
+
+
+def letters_of(text: str) -> str:
+    return "".join(letter for letter in text if letter.isalnum())
+
+
+@given(PARTS, st.lists(st.integers(60, 400), min_size=14, max_size=14))
+def test_what_is_seen_is_always_shown_in_order_and_what_is_not_is_slanted(
+    parts: list[tuple[str, str, bool, bool]], lengths: list[int]
+) -> None:
+    told = told_of(parts)
+    ends = list(accumulate(lengths))
+    segments = list(pairwise([0, *ends]))[: max(len(told.spans), 1)]
+    shown = subtitles(told, segments, FPS)
+    if not told.spans:
+        assert shown == []
+        return
+    assert all(one.stop <= other.start for one, other in pairwise(shown))
+    assert all(not line.text.endswith((",", ";", ":", "–", " ")) for line in shown)
+    plain = "".join(
+        letter for line in shown for row in line.lines for letter, slanted in row if letter.isalnum() and not slanted
+    )
+    assert plain == letters_of(told.events)
+
+
+def test_a_sentence_is_parted_only_where_a_clause_ends_and_its_beginning_is_never_left_out() -> None:
+    text = "She got a call that her grandson was born, danced through the room and sat down."
+    spans = spans_of(text, "got a call", "danced", "sat")
+    told = Told("", text, spans)
+    apart = subtitles(told, [(0, 300), (300, 600), (600, 900)], FPS)
+    assert [line.text for line in apart] == [
+        "She got a call that her grandson was born…",
+        "danced through the room…",
+        "and sat down.",
+    ]
+    # The first is done in no time: nothing of it is lost.
+    soon = subtitles(told, [(0, 3), (3, 600), (600, 900)], FPS)
+    assert soon[0].text == "She got a call that her grandson was born, danced through the\nroom…"
+    assert soon[-1].text == "and sat down."
+    # Nothing but the same clause lies between these two deeds.
+    text = "He sat down reading a book."
+    told = Told("", text, (Span(0, 11, (0,)), Span(12, 26, (1,))))
+    assert [line.text for line in subtitles(told, [(0, 300), (300, 600)], FPS)] == [text]
+
+
+def test_words_that_are_not_seen_are_slanted_and_whole_subtitles_of_them_left_out() -> None:
+    text = (
+        "She came home, waited nervously at the window, and sat down. "
+        + "He had been gone for a year. " * 5
+        + "She slept."
+    )
+    waits, gone = text.index("waited"), text.index("He had")
+    spans = spans_of(text, "came home", "sat down", "She slept")
+    thoughts = (Span(waits, text.index(", and sat"), ()), Span(gone, text.index(" She slept"), ()))
+    shown = subtitles(Told("", text, spans, thoughts), [(0, 300), (300, 600), (600, 1200)], FPS)
+    slanted = "".join(letter for line in shown for row in line.lines for letter, slants in row if slants)
+    assert slanted.startswith("waited nervously at the window")
+    assert shown[-1].text.endswith("She slept.")
+    assert all(any(not slants for row in line.lines for _, slants in row) for line in shown)
