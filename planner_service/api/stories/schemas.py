@@ -257,7 +257,7 @@ class BeatShown(Beat):
     @property
     def stood_for(self) -> bool:
         """Whether it is not acted, but something else is seen in its place."""
-        return not self.acted and self.why == IN_ITS_PLACE
+        return not self.acted and self.why.startswith(IN_ITS_PLACE)
 
 
 class ShortScriptChosen(BaseModel):
