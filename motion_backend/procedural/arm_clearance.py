@@ -30,10 +30,8 @@ from motion_backend.procedural.touch.hand_captions import steadies, with_both_ha
 from motion_backend.rotations import Array
 from motion_backend.skeleton import Skeleton
 
-ROUNDS, BARREN = 6, 2
-"""So often it is looked again what a moved arm is in, and so often in a row in vain."""
-GAIN: Final = 0.95
-"""A round that leaves more than this of what arms were in was in vain."""
+ROUNDS, BARREN, GAIN = 6, 2, 0.95
+"""So often it is looked again what a moved arm is in, and so often in a row in vain: more than this of it is left."""
 HARDER, EASIER = 4.0, 4.0
 """How much more a frame's detour is damped after a round that left its arms deeper in something, and how much less
 after one that did not."""
@@ -164,7 +162,7 @@ class _Arms(NamedTuple):
     def on(self, detours: Array) -> _Tried:
         """The arms on detours (2, T, 4)."""
         pose = self.moved(detours)
-        arms = _both(pose, self)
+        arms = Arm.of(pose, self.skeleton, 0, self.chest), Arm.of(pose, self.skeleton, 1, self.chest)
         hands = _hands(arms)
         first, second = (_rows(arm, self.contacts(arms, hands, index)) for index, arm in enumerate(arms))
         frames, wanted = (np.concatenate(pair) for pair in zip(first[::2], second[::2], strict=True))
@@ -222,11 +220,6 @@ def _step(arms: _Arms, best: _Tried, damped: Array, free: bool) -> Array:
 def _laid(pose: Pose) -> Array:
     """How much each hand lies on something. (T, 2)."""
     return pose.reaching * np.clip((pose.pressing - LAID_FROM) / (1 - LAID_FROM), 0.0, 1.0)
-
-
-def _both(pose: Pose, arms: _Arms) -> tuple[Arm, Arm]:
-    """The arms as a pose has them."""
-    return Arm.of(pose, arms.skeleton, 0, arms.chest), Arm.of(pose, arms.skeleton, 1, arms.chest)
 
 
 def _hands(arms: tuple[Arm, Arm]) -> tuple[Array, Array]:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from motion_backend.backend_protocol import HISTORY, POSTURE_AFTER, BodyState, History, Part, PartKind
-from motion_backend.motion import FPS, Character, Motion, Note, Phase, PhaseKind, Posture
+from motion_backend.motion import FPS, Character, Motion, Note, PhaseKind, Posture
 from motion_backend.procedural.arm_clearance import Around, arms_clear
 from motion_backend.procedural.balance_pass import Before, balanced
 from motion_backend.procedural.body_state import Body
@@ -142,17 +142,12 @@ def _to_motion(body: Body, part: Part) -> Motion:
         skeleton=body.skeleton,
         actions=np.full(len(pose), action.keyframe, dtype=np.int32),
         fps=FPS,
-        phases=_filling(body.phases, len(pose)),
+        phases=(*body.phases[:-1], replace(body.phases[-1], stop=len(pose))),
         notes=tuple(Note(part.action.keyframe, words) for words in body.otherwise),
     )
     kept = frames_kept_back(part, body.upcoming, whole) if body.stride is None else 0
     body.tail = all_released(pose.at(slice(len(pose) - kept - 1, None)), body.skeleton) if kept else None
     return whole.part(0, len(pose) - kept)
-
-
-def _filling(phases: tuple[Phase, ...], frames: int) -> tuple[Phase, ...]:
-    """Phases of so many frames: the last one goes on to their end."""
-    return (*phases[:-1], replace(phases[-1], stop=frames))
 
 
 def _nothing(body: Body, part: Part) -> Motion:

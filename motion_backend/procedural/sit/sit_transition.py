@@ -319,7 +319,8 @@ def stand_up(start: Pose, seat: Seat, bearing: Bearing, push: Holds, skeleton: S
     times = [*(row.time_share * seconds for row in (ready, *rows)), seconds]
     leant = replace(
         over,
-        pelvis=seat.pelvis + ready.pelvis_ahead_m * skeleton.scale * _ahead_of(seat),
+        pelvis=seat.pelvis
+        + ready.pelvis_ahead_m * skeleton.scale * np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)]),
         **_lean(seat, lean, fold, ready),
     )
     over_feet = lean * (keys.rise.low_lean_ratio if low else 1.0)
@@ -355,11 +356,6 @@ def _lean(seat: Seat, lean: float, fold: float, row: Ready) -> dict[str, Array]:
         "hips": upright(seat.yaw, (row.hip_pitch_share - fold) * lean),
         "spine": bend((row.spine_pitch_share + fold) * lean),
     }
-
-
-def _ahead_of(seat: Seat) -> Array:
-    """Unit vector that a sitter faces. (3,)."""
-    return np.array([np.sin(seat.yaw), 0.0, np.cos(seat.yaw)])
 
 
 def _risen(row: Risen, ready: Pose, end: Pose, seat: Seat, lean: float) -> Pose:
