@@ -36,8 +36,8 @@ MAX_LETTERS: Final = 66
 MAX_LINES: Final = 2
 TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
 """Of the picture's height."""
-WORDS_END, TITLE_END = 0.94, 0.58
-"""Where in the picture's height they end."""
+WORDS_END, TITLE_END = 0.94, 0.92
+"""Where in the picture's height they end: a title in the middle would hide who is in the first shot."""
 SHADE: Final = 0.62
 """How much of a picture's light stays under its words."""
 READ: Final = (3.0, 2.0, 7.0)
