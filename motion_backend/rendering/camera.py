@@ -130,6 +130,16 @@ class Sight:
         score = HIDDEN * seen + INDOORS * self.indoors(camera) - BLOCKED * self.blocked(camera)
         return score - AT_WINDOW * self._at_a_window(eye)
 
+    def shows(self, camera: Camera, corners: Array, side: Side) -> float:
+        """How much of an opening a camera sees: the share of its corners (N, 3) that no furniture hides, counted by
+        how straight it is looked at; none of it from behind its wall."""
+        eye = np.asarray(camera.eye)
+        if not side.faces(eye[[0, 2]]):
+            return 0.0
+        across = float(camera.axes[2][[0, 2]] @ side.outward)
+        free = 1.0 - float(self.near.hide(eye, corners).mean())
+        return free * float(np.sqrt(np.clip(abs(across), 0.0, 1.0)))
+
     def blocked(self, camera: Camera) -> bool:
         """Whether the eye is within furniture, or right before some."""
         eye = np.asarray(camera.eye)

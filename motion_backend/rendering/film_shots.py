@@ -18,6 +18,7 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion
 from motion_backend.rendering.camera import FOV, YAWS, Shot, liking
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
+from motion_backend.rendering.film_entrance import Entrance
 from motion_backend.rendering.film_set import FilmSet
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.rasterizer import Camera, orbit
@@ -64,6 +65,8 @@ ALONG: Final = 0.8
 """What it counts to look along an arm, of which then nothing is seen."""
 FROM_INSIDE: Final = 1.0
 """What it counts to be in the room, from near."""
+AT_DOOR: Final = 3.0
+"""What it counts in the first shot to see the door by which somebody comes in."""
 TRIES: Final = 12
 """Views of a shot that are looked through."""
 
@@ -155,7 +158,10 @@ class _Director:
         """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet."""
         frames = _sampled(start, stop)
         poses = self.joints[frames]
+        entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
         points = poses.reshape(-1, 3)
+        if entrance is not None:
+            points = np.concatenate([points, entrance.corners])
         sight = self.set.sight(_middle(points))
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
         scored = []
@@ -164,6 +170,8 @@ class _Director:
                 camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
                 score = float(liked[index]) + sight.score(camera, poses)
                 score -= FAR * _distance(camera)
+                if entrance is not None:
+                    score += AT_DOOR * sight.shows(camera, entrance.corners, entrance.side)
                 scored.append((score - self._broken(camera, before, start), camera))
         return _sorted(scored)
 

@@ -9,12 +9,16 @@ import os
 import signal
 import sys
 import threading
+from contextlib import suppress
+from dataclasses import replace
 from typing import Final
 
 import structlog
 from sqlalchemy import Engine, text
 from sqlalchemy.exc import InterfaceError, OperationalError
 
+from motion_backend.backends import DEFAULT_BACKEND
+from motion_backend.director import Director
 from planner_service.extraction.speech_to_text import load_transcriber
 from planner_service.jobs.extraction_stages import Reader
 from planner_service.jobs.film_stages import Filmer
@@ -24,16 +28,19 @@ from planner_service.jobs.uploads import Uploads
 from planner_service.jobs.worker_lock import hold_name
 from planner_service.library.library import Shelves
 from planner_service.llm.factory import load_model
-from planner_service.pipeline import Pipeline
+from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.settings import Settings, give_backends
 from planner_service.store.database import database_url, open_engine
 from planner_service.store.story_store import Stories
+from scene_graphs.errors import UserError
 from scene_graphs.layout_library import compile_search
 
 POLL: Final = 0.15
 """Seconds between two looks into the queue: an idle worker costs little, and a story starts at once."""
 RARELY: Final = 1.0
 """The same for films, which take longer than that to read: two queues looked into so often slowed the service."""
+WARM: Final = "She comes home happy, sits down on the sofa and reads a book."
+"""What is begun before anything is asked for."""
 KEEP: Final = 3.0
 """Seconds between two looks at whether this worker's name is still its own."""
 log = structlog.get_logger("sims.worker")
@@ -95,10 +102,17 @@ def run_worker(settings: Settings, supervised: bool = False) -> None:
 
 
 def warm_up(pipeline: Pipeline) -> None:
-    """Load scripts, rooms, the compiled search and the encoder now, so that the first story does not wait for them."""
+    """Load scripts, rooms, the compiled search and the encoder now, and begin a story that nobody sees, so that the
+    first one that somebody waits for is made as fast as those after it; no language model is asked."""
     pipeline.shelves.layouts()
     compile_search()
     pipeline.shelves.scripts().search("warm up", 1)
+    request, rules = StoryRequest(WARM), replace(pipeline, model=None)
+    with suppress(UserError):  # what a library of one's own lacks is said to whom it matters
+        planned = rules.plan(request)
+        action = rules.act(request, planned.stage)[0]
+        director = Director.of(DEFAULT_BACKEND)
+        director.act(planned.home, action, director.begin(planned.home, planned.character, request.seed, action))
 
 
 def _wait_for(engine: Engine, stop: threading.Event) -> bool:

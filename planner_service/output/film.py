@@ -29,8 +29,8 @@ SIZE: Final = (1280, 720)
 TITLE_SECONDS: Final = 2.5
 TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
 """Of the picture's height."""
-WORDS_END, TITLE_END = 0.94, 0.58
-"""Where in the picture's height they end."""
+WORDS_END, TITLE_END = 0.94, 0.92
+"""Where in the picture's height they end: a title in the middle would hide who is in the first shot."""
 SHADE: Final = 0.62
 """How much of a picture's light stays under its words."""
 
