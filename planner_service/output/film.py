@@ -14,7 +14,7 @@ from motion_backend.rendering.film_frames import film_frames
 from motion_backend.rendering.film_picture import lay_words
 from motion_backend.rendering.film_shots import film_shots
 from planner_service.output.film_letters import lettered, titled
-from planner_service.output.film_words import subtitles
+from planner_service.output.film_pages import subtitles
 from scene_graphs.errors import UserError
 
 if TYPE_CHECKING:

@@ -30,7 +30,7 @@ from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
 from motion_backend.skeleton import INDEX
 from planner_service.narration.told import Span, Told
-from planner_service.output.film_words import DONE, subtitles
+from planner_service.output.film_pages import DONE, subtitles
 
 SIZE = (96, 54)
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from motion_backend.motion import FPS
 from planner_service.narration.told import Span, Told
 from planner_service.output.film import Filmed
-from planner_service.output.film_words import LETTERS, READ, subtitles
+from planner_service.output.film_pages import LETTERS, READ, subtitles
 from planner_service.pipeline import Pipeline, StoryRequest
 
 
