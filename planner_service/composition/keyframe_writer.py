@@ -228,7 +228,7 @@ class KeyframeWriter:
                 continue
             if one is nexts[0] and is_beside(one):  # "collapses | giggling on the rug"
                 return then
-            if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit"):
+            if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit") and then.pieces[0] != "floor":
                 return replace(deed, pieces=then.pieces, named=True)
         return deed
 

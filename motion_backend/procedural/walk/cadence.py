@@ -76,7 +76,7 @@ def plan_phase(
     if style.aside == SIDEWAYS:
         # Feet that are brought together and apart again must not cross.
         longest = route.speed / (row.side_step_max_ratio * style.width * scale)
-    # A turn takes a step every 60 degrees or so, a spin fewer: nobody trips along at five steps a second.
+    # A turn takes a step every half right angle or so, a spin fewer: nobody trips along at five steps a second.
     turned = np.minimum(turning / row.turn_rad, row.turn_max_hz)
     rate = np.maximum.reduce([usual, turned, longest, np.full_like(usual, row.min_hz)])
     if style.double < 0:

@@ -85,7 +85,7 @@ def story_shown(record: Record) -> Json:
         "report": made.get("report"),
     }
     lists = {name: made.get(name, []) for name in ("spans", "thoughts", "repairs", "short_scripts")}
-    if made.get("text"):
+    if "spans" in made:
         lists["thoughts"] = Told.from_dict(made).with_unseen(lost_in_moving(beats, shots)).to_dict()["thoughts"]
     return story_summary(record, frames) | shown | lists
 

@@ -286,6 +286,7 @@ def test_named_furniture_is_looked_for_where_it_usually_is_and_not_in_the_room_o
     [
         ("She reads the letter twice. She sits down on the sofa and weeps.", ["sofa"]),
         ("She reads a book. She opens the fridge.", ["armchair", "sofa", "chair"]),
+        ("She reads a book. She opens the fridge. She sinks to the floor.", ["armchair", "sofa", "chair", "floor"]),
     ],
 )
 def test_who_sits_for_something_does_so_where_the_theme_has_them_sit_next(theme: str, seats: list[str]) -> None:
