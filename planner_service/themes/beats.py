@@ -19,7 +19,7 @@ from planner_service.themes.protagonist import called, head_of, hero_of, is_hero
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
-from planner_service.themes.verb_finder import tokens_of
+from planner_service.themes.verb_finder import is_adverb, tokens_of
 from planner_service.themes.verb_group import NEARLY
 from scene_graphs.errors import UserError
 
@@ -141,9 +141,15 @@ def read_beats(clauses: Sequence[Clause]) -> tuple[ReadBeat, ...]:
     read = [
         _read(clause, hero, pronoun, tells_of_others(clause, clauses, hero, pronoun), at in recalled)
         for at, clause in enumerate(clauses)
-        if clause.verb or clause.text.lower() != hero.lower()
+        if clause.verb or not (clause.text.lower() == hero.lower() or _only_says_how(clause))
     ]
     return tuple(_moods(read))
+
+
+def _only_says_how(clause: Clause) -> bool:
+    """Whether words say how something is done, and no mood: "and | slowly | waltzes"."""
+    words = [token.low for token in tokens_of(clause.text)]
+    return clause.aside and all(map(is_adverb, words)) and not feelings(clause.text)
 
 
 def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bool) -> ReadBeat:

@@ -296,3 +296,9 @@ def test_a_mood_before_a_verb_is_felt_and_any_other_words_there_are_nobodys_deed
     assert ("other", "Her hair wet") in [
         (read.beat.kind, read.beat.text) for read in beats_of("Her hair wet, Anna walks in.")
     ]
+
+
+@pytest.mark.parametrize("how", ["slowly", "gently", "suddenly"])
+def test_how_a_deed_is_done_is_no_beat_of_its_own(how: str) -> None:
+    assert [one.text for one in beats_of(f"She stands, and {how} opens the door.")] == ["stands", "opens the door"]
+    assert [one.text for one in beats_of(f"She {how} opens the door.")] == ["opens the door"]
