@@ -36,6 +36,8 @@ def tells_no_deed(clause: Clause) -> bool:
 def _is_when_or_none(clause: Clause) -> bool:
     """Whether words without a verb tell the time, the weather, or that there is nothing: "Laundry day", "Nothing"."""
     words = theme_words()
+    if "but" in clause.lemmas:
+        return False  # "Nothing but boredom"
     near = (head_of(clause.text).lower(), clause.text.split()[0].lower())
     told = {*near, *map(lemma_of, near)}
     return bool(told & (words["weather"] | words["told_times"] | _NONE))

@@ -13,6 +13,7 @@ from motion_backend.emotion_words import emotion_of
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS
 from planner_service.themes.beats import MAX_THEME_LENGTH, ThemeError, beats_of, read_beat, rooms_in
+from planner_service.themes.no_deeds import tells_no_deed
 from planner_service.themes.verb_finder import has_verb
 
 
@@ -302,3 +303,9 @@ def test_a_mood_before_a_verb_is_felt_and_any_other_words_there_are_nobodys_deed
 def test_how_a_deed_is_done_is_no_beat_of_its_own(how: str) -> None:
     assert [one.text for one in beats_of(f"She stands, and {how} opens the door.")] == ["stands", "opens the door"]
     assert [one.text for one in beats_of(f"She {how} opens the door.")] == ["opens the door"]
+
+
+def test_what_there_is_nothing_but_is_there() -> None:
+    (boredom,) = [one.clause for one in beats_of("Nothing but boredom.")]
+    assert not tells_no_deed(boredom)
+    assert tells_no_deed(beats_of("She waits. Nothing.")[-1].clause)
