@@ -19,7 +19,6 @@ from motion_backend.motion import Motion
 from motion_backend.rendering.film_frames import compile_film
 from planner_service.grounding.keyframes_to_actions import act
 from planner_service.output.film import Filmed, write_film
-from planner_service.output.story_export import beats_of
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge, move
 
@@ -145,7 +144,7 @@ def quality_figures(made: Sequence[Timed]) -> list[Figure]:
     rows = np.array([quality(report) for report in reports])
     whole = quality(summarise([figure for one in made for figure in one.story.figures]))
     keyframes, reached = (sum(report[name] for report in reports) for name in ("keyframes", "reached"))
-    beats = [beats_of(one.story) for one in made]
+    beats = [one.story.beats for one in made]
     asked = sum(one.asked for one in beats)
     return [
         Figure("beats not acted", asked - sum(one.acted for one in beats), "", 0, note=f"of {asked}", digits=0),

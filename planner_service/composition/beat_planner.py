@@ -169,8 +169,8 @@ def _besides(
     if read.beat.kind != "deed":
         return ()
     by = BY_A_WALL.search(read.text) if all(one.skill in (Skill.SITDOWN, Skill.LIEDOWN) for one in own) else None
-    known = unshown(read.clause, {one.piece[0] for one in own})
-    return (*known, by[0]) if by and not any(by[0] in one for one in known) else known  # seats stand where they do
+    besides = unshown(read.clause, {one.piece[0] for one in own})
+    return (*besides, by[0]) if by and not any(by[0] in one for one in besides) else besides  # seats stand where they do
 
 
 def _does_more(read: ReadBeat) -> bool:
