@@ -170,7 +170,8 @@ def _besides(
         return ()
     by = BY_A_WALL.search(read.text) if all(one.skill in (Skill.SITDOWN, Skill.LIEDOWN) for one in own) else None
     besides = unshown(read.clause, {one.piece[0] for one in own})
-    return (*besides, by[0]) if by and not any(by[0] in one for one in besides) else besides  # seats stand where they do
+    # Seats stand where they do.
+    return (*besides, by[0]) if by and not any(by[0] in one for one in besides) else besides
 
 
 def _does_more(read: ReadBeat) -> bool:
