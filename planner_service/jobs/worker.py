@@ -110,9 +110,9 @@ def warm_up(pipeline: Pipeline) -> None:
     request, rules = StoryRequest(WARM), replace(pipeline, model=None)
     with suppress(UserError):  # what a library of one's own lacks is said to whom it matters
         planned = rules.plan(request)
-        action = rules.act(request, planned.stage)[0]
         director = Director.of(DEFAULT_BACKEND)
-        director.act(planned.home, action, director.begin(planned.home, planned.character, request.seed, action))
+        for action in rules.act(request, planned.stage)[:1]:
+            director.act(planned.home, action, director.begin(planned.home, planned.character, request.seed, action))
 
 
 def _wait_for(engine: Engine, stop: threading.Event) -> bool:

@@ -41,3 +41,8 @@ def test_a_library_that_furnishes_no_home_stops_no_worker(monkeypatch: pytest.Mo
 
     monkeypatch.setattr(Pipeline, "furnish", refused)
     warm_up(Pipeline(Shelves(cache=encoded())))
+
+
+def test_a_story_in_which_nothing_is_left_to_do_stops_no_worker(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Pipeline, "act", lambda *_: ())
+    warm_up(Pipeline(Shelves(cache=encoded())))
