@@ -43,11 +43,11 @@ class Vocabulary:
 
     @staticmethod
     def read(text: str) -> Vocabulary:
-        """From JSON; WeightsError where our captions are not those that were learned."""
+        """From JSON; WeightsError where a learned caption is no longer ours. Newer ones are known by the table alone."""
         known = json.loads(text)
         learned = tuple((Skill(skill), caption) for skill, caption in known["captions"])
         ours = {(Skill(skill), one) for skill, some in captions().items() for one in some}
-        if set(learned) != ours:
+        if not ours >= set(learned):
             raise WeightsError(
                 "the captions are not those that the beat classifier has learned", "train it again: sims train beats"
             )
@@ -75,6 +75,10 @@ class Likely:
     def best(self) -> Caption:
         """The likeliest caption."""
         return max(self.captions, key=lambda one: self.captions[one])
+
+    def has_learned(self, skill: Skill, caption: str) -> bool:
+        """Whether it was among the captions that were learned: of newer ones nothing is known."""
+        return (skill, caption) in self.captions
 
     def of(self, skill: Skill, some: Collection[str]) -> float:
         """The likeliest of some captions of a skill; 0 for none that are known."""
