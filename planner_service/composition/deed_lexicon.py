@@ -99,6 +99,12 @@ class DeedRow:
     """Whether its captions only stand for it."""
     why: str = ""
     """Why a body at home does not do it."""
+    unless: tuple[str, ...] = ()
+    """Of a gesture: where the words mean something else."""
+    small: bool = False
+    """Of a gesture: whether nobody gets up for it."""
+    walks: bool = False
+    """Of a gesture: whether it is a way of walking, and not done on the spot."""
 
 
 @table
@@ -112,10 +118,12 @@ class DeedTable:
     stands_on: dict[str, str]
     seats_at: dict[str, tuple[str, ...]]
     deed: tuple[DeedRow, ...]
+    gesture: tuple[DeedRow, ...]
+    """What is seen in limbs, trunk or head, whatever else a clause tells."""
 
     def __post_init__(self) -> None:
         known = captions()
-        for row in self.deed:
+        for row in (*self.deed, *self.gesture):
             for skill, some in ((row.skill, row.captions), (Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
                 require_known(f"deed {row.says[0]!r}", some, known.get(skill.value, ()))
             if row.mood:
@@ -127,12 +135,21 @@ class DeedTable:
     @cached_property
     def ways(self) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
         """Every way to say a deed by each word that may begin it, "" for a gap, in the order of the rows."""
-        found: dict[str, list[tuple[Pattern, DeedRow]]] = {}
-        for row in self.deed:
-            for pattern in map(_pattern, row.says):
-                for first in pattern[0] or ("",):
-                    found.setdefault(first, []).append((pattern, row))
-        return found
+        return _by_first_word(self.deed)
+
+    @cached_property
+    def gestures(self) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
+        """The same of gestures."""
+        return _by_first_word(self.gesture)
+
+
+def _by_first_word(rows: Iterable[DeedRow]) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
+    found: dict[str, list[tuple[Pattern, DeedRow]]] = {}
+    for row in rows:
+        for pattern in map(_pattern, row.says):
+            for first in pattern[0] or ("",):
+                found.setdefault(first, []).append((pattern, row))
+    return found
 
 
 @cache
@@ -152,6 +169,11 @@ class Deed:
     """Furniture where it may be done, the likeliest first; empty: wherever one is."""
     named: bool
     """Whether the beat itself names the furniture."""
+
+    @property
+    def is_gesture(self) -> bool:
+        """Whether it is seen in limbs, trunk or head: what has been learned of beats has no opinion of that."""
+        return any(self.row.says is row.says for row in deed_table().gesture)
 
 
 def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed | None:
@@ -348,6 +370,10 @@ def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
     ways = deed_table().ways
     does = bool(clause.verb) or clause.text.split(" ", 1)[0].endswith("ing")  # "pacing", but not "wrapped in a blanket"
+    for lemmas in readings(clause) if does else ():
+        for pattern, row in deed_table().gestures.get("".join(lemmas[:1]), ()):
+            if _fits(pattern, lemmas) and not says(row.unless, lemmas):
+                return len(lemmas), row
     for lemmas in readings(clause):
         fitting = [
             (_words_in(pattern), row)
@@ -511,5 +537,5 @@ def _names(words: Sequence[str], size: int) -> bool:
 
 def room_of(clause: Clause) -> str | None:
     """The room type that the words of a clause make one think of: "cooks" is the kitchen's."""
-    words = {*clause.lemmas, *pieces_in(clause.text)}
+    words = {*clause.lemmas, *pieces_in(clause.text)} - ({"sink"} if clause.verb == "sink" else set())
     return next((room for room, those in deed_table().rooms.items() if words & set(those)), None)
