@@ -45,6 +45,8 @@ _GROUND: Final = re.compile(r"\b(?:floor|floorboards?|(?:hearth)?rugs?|carpets?|
 _UNDER_IT: Final = re.compile(r"\b(?:under|beneath|underneath|below) (?:the|an?|his|her|their|my|every|each)\b")
 _GOAL: Final = re.compile(r"\b(?:over|on|onto|into|in|inside|under|against|behind|beneath|beside) ((?:\w+ ?){1,4})")
 """Where something is put."""
+_BROUGHT_TO: Final = re.compile(r"\b(?:to|into|onto|towards?) ((?:\w+ ?){1,4})")
+"""Where a way leads: "drags the chair | to the desk"."""
 _LOW: Final = ("touch low height with the right hand", "touch low height")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
@@ -159,6 +161,19 @@ def deed_table() -> DeedTable:
     return known
 
 
+@cache
+def captions_of_gestures() -> frozenset[tuple[Skill, str]]:
+    """The captions that gestures have and no other deed: labels of beats that were learned from do not know them."""
+    table = deed_table()
+    return _captions(table.gesture) - _captions(table.deed)
+
+
+def _captions(rows: Iterable[DeedRow]) -> frozenset[tuple[Skill, str]]:
+    own = ((row.skill, row.captions) for row in rows)
+    rest = ((skill, some) for row in rows for skill, some in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)))
+    return frozenset((skill, one) for skill, some in (*own, *rest) for one in some)
+
+
 @dataclass(frozen=True)
 class Deed:
     """What a beat has a body do."""
@@ -198,8 +213,11 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     )
     if skill is Skill.LIEDOWN and seated and not (_FLOOR.search(clause.text) or _UNDER.search(clause.text)):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
+    if need is None and (rested := _at_rest(found, named)):
+        return rested
     if need is None:
-        pieces = [piece for piece in named if furniture.affordances(piece)]
+        goals = [piece for place in _BROUGHT_TO.findall(clause.text) for piece in pieces_in(place)]
+        pieces = [piece for piece in goals or named if furniture.affordances(piece)]
         return Deed(found, skill, tuple(pieces), bool(pieces))
     if skill is Skill.TOUCH:
         return _touched(clause, about, found, named)
@@ -211,6 +229,15 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     if under or _FLOOR.search(clause.text):
         fitting = ["floor"]
     return Deed(found, skill, tuple(fitting or dict.fromkeys(found.at)), bool(fitting))
+
+
+def _at_rest(row: DeedRow, named: Sequence[str]) -> Deed | None:
+    """What is done sitting or lying on what is named, of what is else done on one's feet: "weeps on the bed"."""
+    for skill, captions in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
+        fitting = tuple(piece for piece in named if affords(piece, NEEDS[skill]))
+        if row.skill is Skill.LOCO and captions and fitting:
+            return Deed(replace(row, skill=skill, captions=captions, rests=True), skill, fitting, True)
+    return None
 
 
 def _touched(clause: Clause, about: str, row: DeedRow, named: list[str]) -> Deed | None:
@@ -370,11 +397,11 @@ def _said(clause: Clause) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
     ways = deed_table().ways
     does = bool(clause.verb) or clause.text.split(" ", 1)[0].endswith("ing")  # "pacing", but not "wrapped in a blanket"
-    for lemmas in readings(clause) if does else ():
-        for pattern, row in deed_table().gestures.get("".join(lemmas[:1]), ()):
+    limbs = lemma_of(head_of(clause.subject)) in theme_words()["body"]  # "one leg stretched before him"
+    for lemmas in readings(clause):
+        for pattern, row in deed_table().gestures.get("".join(lemmas[:1]), ()) if does and not limbs else ():
             if _fits(pattern, lemmas) and not says(row.unless, lemmas):
                 return len(lemmas), row
-    for lemmas in readings(clause):
         fitting = [
             (_words_in(pattern), row)
             for first in ("".join(lemmas[:1]) if does else "", "")

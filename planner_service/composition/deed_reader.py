@@ -96,10 +96,6 @@ _THINGS: Final = re.compile(
 )
 """What begins so is done by a thing, or by nobody: "the latch clicks"."""
 
-_LOW_DOWN: Final = re.compile(
-    r"\b(?:under\w*|beneath|below|behind|floor\w*|ground|rug|carpet|tiles|low\w*|bottom|kne\w+|crawl\w*|crouch\w*|prone)\b"
-)
-"""Words of what hands get down on the floor for."""
 _NOBODY: Final = frozenset(("no", "nobody", "nothing", "none", "neither", "few", "hardly"))
 """What is done by these is not done."""
 _WHEN: Final = re.compile(
@@ -164,8 +160,7 @@ class DeedReader:
         if clause.text not in self._nevers:
             instrument = self._instruments.get(clause.text)
             played = replace(clause, lemmas=(clause.verb, instrument)) if instrument else clause
-            low = () if _LOW_DOWN.search(clause.text) else ("prone",)
-            self._nevers[clause.text] = tuple(dict.fromkeys((*contradicted(clause), *contradicted(played), *low)))
+            self._nevers[clause.text] = tuple(dict.fromkeys((*contradicted(clause), *contradicted(played))))
         return self._nevers[clause.text]
 
     def deed(self, clause: Clause, about: str = "") -> Deed | None:
@@ -325,7 +320,9 @@ def _in_particular(deed: Deed, likely: Likely, clause: Clause) -> Deed:
         return deed
     most = likely.of(deed.skill, known)
     likeliest = [one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most]
-    idle = tuple(one for one in likeliest if not any(part in one for part in IN_HANDS) or shows(deed.skill, one, clause))
+    idle = tuple(
+        one for one in likeliest if not any(part in one for part in IN_HANDS) or shows(deed.skill, one, clause)
+    )
     some = idle or tuple(likeliest)
     any_way = most < LIKELY or len(some) > ANY * len(known)
     if any_way or most - likely.of(deed.skill, shown_by(deed, Emotion.NEUTRAL)) < SURER_THAN_ANY:

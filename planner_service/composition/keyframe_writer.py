@@ -74,6 +74,10 @@ _GETS_THERE: Final = re.compile(
     r"\b(?:down|into|onto|back|under|climbs?|crawls?|falls?|flops?|goes|go|went|gets?|got|drops?|collapses?|curls?)\b"
 )
 """Words that tell of lying down, not of lying there."""
+_LOW_DOWN: Final = re.compile(
+    r"\b(?:under\w*|beneath|below|behind|floor\w*|ground|rug|carpet|tiles|low\w*|bottom|kne\w+|crawl\w*|crouch\w*|prone)\b"
+)
+"""Words of what hands get down on the floor for."""
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -515,7 +519,10 @@ class KeyframeWriter:
         """One caption by the seed, of those that are likeliest to show it and that the library uses in the mood."""
         captions = self.reader.likeliest(self._clause, skill, captions) if self._clause else captions
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
-        options = fitting(told or captions, skill, mood)
+        standing = [
+            one for one in captions if "prone" not in one or self._clause is None or _LOW_DOWN.search(self._clause.text)
+        ]
+        options = fitting(told or standing or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
 
 
