@@ -20,7 +20,7 @@ from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_pose import SURFACES
 from motion_backend.procedural.sit.sit_styles import sit_style
-from motion_backend.procedural.touch.gestures import GESTURES, gesture
+from motion_backend.procedural.touch.gestures import gesture, gesture_names
 from motion_backend.procedural.touch.hand_captions import handling_of, with_both_hands
 from motion_backend.procedural.touch.hand_rests import HOLDS
 from motion_backend.procedural.walk.walk_styles import walk_style
@@ -205,7 +205,7 @@ def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: flo
     assert motion.root_positions[-1, 2] == pytest.approx(z, abs=0.02)
 
 
-@for_each("doing", [*GESTURES, "", "juggle"])
+@for_each("doing", [*gesture_names(), "", "juggle"])
 def test_a_gesture_begins_and_ends_in_the_held_pose(doing: str) -> None:
     pose = standing((0.0, 0.0), 0.0, replace(Bearing(), arms=("desk", "desk")), build_skeleton(1.7)).repeat(80)
     made = gesture(pose, doing)
