@@ -23,6 +23,10 @@ from scene_graphs.data_tables import read_table, table
 
 STANDS: Final = 0.895
 """A standing pelvis (metres at 1.70 m)."""
+_FINGERS: Final = np.array([[0.6, 0.0, 0.8], [0.6, 0.0, -0.8]])
+_BACKS: Final = np.array([[0.0, -1.0, 0.0], [0.0, -1.0, 0.0]])
+PALMS_UP: Final = rotations.basis_to_quat(_FINGERS, _BACKS, rotations.cross(_FINGERS, _BACKS))
+"""Both hands against where the body faces: palms up, fingers ahead and outwards."""
 
 
 @table
@@ -99,6 +103,8 @@ class MoveKey:
     """When in its time."""
     arms: tuple[str, str] = ("", "")
     """Poses of styles/arms.toml for the left and the right; as they are held where that is empty."""
+    palms_up: bool = False
+    """Whether palms look up, fingers ahead and outwards."""
     spine_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Forwards, to the left, to the side."""
     head_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -129,7 +135,8 @@ class MoveKey:
             elbows=np.where(named[:, None], poles, held.elbows),
             # A hand that goes elsewhere leaves what it may have been laid on.
             reaching=np.where(named, 0.0, held.reaching),
-            pressing=np.where(named, 0.0, held.pressing),
+            palms=rotations.compose(heading, PALMS_UP) if self.palms_up else held.palms,
+            pressing=np.where(named, float(self.palms_up), held.pressing),
             planted=np.where(lifted, 0.0, held.planted),
         )
 
@@ -254,7 +261,7 @@ def _through_keys(held: Pose, time: Array, rows: Move) -> Pose:
     added = ("pelvis", "spine", "head", "ankles", "arms", "elbows", "reaching", "pressing")
     moved = {name: getattr(held, name) + getattr(way, name) - getattr(base, name) for name in added}
     hips = rotations.compose(held.hips, rotations.compose(rotations.inverse(base.hips), way.hips))
-    return replace(held, hips=hips, feet=way.feet, planted=way.planted, **moved)
+    return replace(held, hips=hips, feet=way.feet, palms=way.palms, planted=way.planted, **moved)
 
 
 def _write(held: Pose, time: Array, ease: Array) -> Pose:
