@@ -240,7 +240,7 @@ def stay(body: Body, part: Part) -> None:
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     does_it = style.stays > 0 and bool(style.doing)
     if action.stands and not does_it:
-        _stand_about(body, part.hold, bearing)
+        _stand_about(body, part.hold, replace(bearing, waits=style.bearing.waits))
         return
     if not does_it and (action.skill is not Skill.LOCO or action.goal is not None):
         body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))
