@@ -207,7 +207,7 @@ class HandMove:
     off_m: float = 0.0
     """Out from the surface."""
     tilt_rad: float = 0.0
-    """About the way of the fingers, inwards over the thumb."""
+    """About the way of the fingers, the thumb downwards."""
     phase_share: float = 0.0
     taps: bool = False
     """Whether only its upper half is gone through."""
