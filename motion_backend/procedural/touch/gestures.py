@@ -15,7 +15,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays
-from motion_backend.procedural.pose import Pose, interpolate, smooth
+from motion_backend.procedural.pose import ROTATIONS, Pose, interpolate, smooth
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH
@@ -260,8 +260,12 @@ def _through_keys(held: Pose, time: Array, rows: Move) -> Pose:
     way = interpolate([share * float(time[-1]) / times for share, _ in every], [pose for _, pose in every], FPS)
     added = ("pelvis", "spine", "head", "ankles", "arms", "elbows", "reaching", "pressing")
     moved = {name: getattr(held, name) + getattr(way, name) - getattr(base, name) for name in added}
-    hips = rotations.compose(held.hips, rotations.compose(rotations.inverse(base.hips), way.hips))
-    return replace(held, hips=hips, feet=way.feet, palms=way.palms, planted=way.planted, **moved)
+    turned = {
+        name: rotations.compose(getattr(held, name), rotations.compose(rotations.inverse(start), getattr(way, name)))
+        for name in ROTATIONS
+        for start in [getattr(base, name)]
+    }
+    return replace(held, planted=np.minimum(held.planted, way.planted), **moved, **turned)
 
 
 def _write(held: Pose, time: Array, ease: Array) -> Pose:

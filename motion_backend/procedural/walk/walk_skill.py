@@ -129,7 +129,7 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
     body.enter(PhaseKind.WALK)
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     # Who goes somewhere to do something on the spot walks there as one walks.
-    style = walk_style(action.emotion, "walk") if style.stays else style
+    style = walk_style(action.emotion, "walk") if style.stays and action.stands else style
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])

@@ -144,7 +144,11 @@ def test_a_touch_goes_to_the_thing_and_comes_away_from_it(doing: str) -> None:
     # From over the surface onto it; eyes first, and back to standing.
     first = next(row for row in came if row.body == "at it")
     assert came.index(first) > [row.body for row in came].index("looking")
-    assert (first.off_m > 0, min(row.off_m for row in came if row.body == "at it"), came[-1].body) == (True, 0.0, "at it")
+    assert (first.off_m > 0, min(row.off_m for row in came if row.body == "at it"), came[-1].body) == (
+        True,
+        0.0,
+        "at it",
+    )
     # Who stirs or pours takes something there, and does it over the thing.
     assert (came[-1].off_m > 0) == (doing in ("stir", "pour"))
     assert (gone[0].body, gone[-1].body) == ("at it", "standing")
