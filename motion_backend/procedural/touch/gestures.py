@@ -241,7 +241,7 @@ def _move(held: Pose, time: Array, ease: Array, doing: str) -> Pose:
     """The key poses and the waves of that name."""
     rows = gesture_table().moves[doing]
     held = _through_keys(held, time, rows) if rows.keys else held
-    offsets, raised = np.zeros((2, len(time), 3)), held.arms[:, :, 1] > 0
+    offsets, raised = np.zeros((2, len(time), 3)), np.where(held.arms[:, :, 1] > 0, 1.0, 0.0)
     for row in rows.hands:
         for index in (0, 1):
             offsets[index] += row.of_hand(index, raised[:, index]) * row.offsets(time)
