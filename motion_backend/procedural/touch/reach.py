@@ -107,7 +107,9 @@ def touch(
     way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
     whole = deed(way, manner.doing, keys)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
-    return settle_from(start, replace(whole, knees=knees), FPS, seconds=row.settle_s)
+    # A body on its way up takes the hand along before the arm is straight.
+    whole = replace(whole, knees=knees, reaching=whole.reaching**row.goes_along_power)
+    return settle_from(start, whole, FPS, seconds=row.settle_s)
 
 
 def _feet(laid: Laid, manner: Manner, skeleton: Skeleton, keys: ReachTable) -> tuple[int, ...]:
