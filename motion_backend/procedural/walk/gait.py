@@ -14,7 +14,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
-from motion_backend.procedural.walk.arm_swing import arm_spread, swing_arms
+from motion_backend.procedural.walk.arm_swing import Depth, arm_spread, swing_arms
 from motion_backend.procedural.walk.cadence import plan_phase
 from motion_backend.procedural.walk.carriage import carriage
 from motion_backend.procedural.walk.footsteps import Room, Steps, drift, plan_steps, yaw_of
@@ -53,12 +53,13 @@ def walk_on(
     stride: Stride | None = None,
     cut_m: float | None = None,
     room: Room = lambda places: np.full(len(places), np.inf),
+    depth: Depth = lambda points: np.full(len(points), -np.inf),
 ) -> tuple[Pose, Stride | None, Pose | None]:
     """Walk as `walk` does, from a body in the `stride` that the last walk left it in, where there is one.
 
     With `cut_m` the path goes on after the walk is over, so many metres along it: the body does not stop there, and its
     stride is returned (`way_junction.through_way` joins two ways and says where). Without, it ends standing. Nobody
-    staggers beyond the `room` that there is.
+    staggers beyond the `room` that there is, nor holds arms out into what is solid, which points (N, 3) are so deep in.
     """
     fps, row = FPS, carriage().way
     luck = float(np.clip(rng.standard_normal(), -row.pace_spread_max_sigmas, row.pace_spread_max_sigmas))
@@ -77,7 +78,7 @@ def walk_on(
         route = _staggering(route, style.wobble, rng, fps, room)
     route, phase = plan_phase(route, style, skeleton, fps, rng, stride)
     steps = plan_steps(start, route, phase, style, skeleton, rng, stride, room)
-    spread = arm_spread(len(phase), style, stride)
+    spread = arm_spread(route, style, skeleton.scale, depth, stride)
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
     pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
     if cut_m is None:
