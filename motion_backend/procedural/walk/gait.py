@@ -15,7 +15,7 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.walk.arm_swing import Depth, arm_spread, swing_arms
-from motion_backend.procedural.walk.cadence import plan_phase
+from motion_backend.procedural.walk.cadence import cadence, plan_phase
 from motion_backend.procedural.walk.carriage import carriage
 from motion_backend.procedural.walk.footsteps import Room, Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
@@ -76,8 +76,7 @@ def walk_on(
         route = _with_spin(route, style.spin, fps)
     if style.wobble:
         route = _staggering(route, style.wobble, rng, fps, room)
-    route, phase = plan_phase(route, style, skeleton, fps, rng, stride)
-    steps = plan_steps(start, route, phase, style, skeleton, rng, stride, room)
+    route, steps = _stepping(start, route, style, skeleton, rng, stride, room)
     spread = arm_spread(route, style, skeleton.scale, depth, stride)
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
     pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
@@ -92,6 +91,28 @@ def walk_on(
     onward = pose.arms[made] - pose.arms[made - 1] if 0 < made < len(pose) else None
     stride = replace(_stride_at(last, path, gone_m, route, steps, spread), arms_onward=onward)
     return pose.at(slice(0, made)), stride, pose.at(slice(made, made + BEYOND))
+
+
+def _stepping(
+    start: Pose,
+    route: Route,
+    style: Walk,
+    skeleton: Skeleton,
+    rng: np.random.Generator,
+    stride: Stride | None,
+    room: Room,
+) -> tuple[Route, Steps]:
+    """The steps along a route, with the time that the last ones need: who goes on another way than he came along
+    hurries his next steps, so as not to leave a foot behind that was put down for the old way."""
+    row, state = cadence(), rng.bit_generator.state
+    for hurry in row.hurry_ratios:
+        rng.bit_generator.state = state
+        longer, phase = plan_phase(route, style, skeleton, FPS, rng, stride, hurry)
+        steps = plan_steps(start, longer, phase, style, skeleton, rng, stride, room)
+        away = np.linalg.norm(steps.ankles[..., [0, 2]] - longer.position[:, None], axis=-1) * steps.planted
+        if stride is None or float(away.max()) < row.left_behind_m * skeleton.scale:
+            break
+    return longer, steps
 
 
 def _as_feet_change(steps: Steps, pelvis: Array, frame: int) -> int:
