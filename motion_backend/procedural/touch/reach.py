@@ -22,7 +22,7 @@ from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.hand_placement import Depth, placed, turns_of_grip
+from motion_backend.procedural.touch.hand_placement import Depth, lifted_off, placed, turns_of_grip
 from motion_backend.procedural.touch.kneel import down_on_knees, prone
 from motion_backend.procedural.touch.reach_keys import (
     Approach,
@@ -105,7 +105,7 @@ def touch(
     times = manner.hold, tempo, pace, row.folding_s if raised else row.kneeling_step_s, max(looks, 1 / FPS)
     turns = turns_of_grip(reached, laid, skeleton, keys.held.rotate) if manner.doing == "rotate" else (0.0, 0.0)
     way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
-    whole = deed(way, manner.doing, keys)
+    whole = lifted_off(deed(way, manner.doing, keys), laid, skeleton)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
     # A body on its way up takes the hand along before the arm is straight.
     whole = replace(whole, knees=knees, reaching=whole.reaching**row.goes_along_power)
