@@ -105,14 +105,20 @@ def _stepping(
     """The steps along a route, with the time that the last ones need: who goes on another way than he came along
     hurries his next steps, so as not to leave a foot behind that was put down for the old way."""
     row, state = cadence(), rng.bit_generator.state
+    best: tuple[Route, Steps] | None = None
+    least = np.inf
     for hurry in row.hurry_ratios:
         rng.bit_generator.state = state
         longer, phase = plan_phase(route, style, skeleton, FPS, rng, stride, hurry)
         steps = plan_steps(start, longer, phase, style, skeleton, rng, stride, room)
         away = np.linalg.norm(steps.ankles[..., [0, 2]] - longer.position[:, None], axis=-1) * steps.planted
-        if stride is None or float(away.max()) < row.left_behind_m * skeleton.scale:
+        if best is not None and away.max() >= least:
             break
-    return longer, steps
+        best, least = (longer, steps), float(away.max())
+        if stride is None or least < row.left_behind_m * skeleton.scale:
+            break
+    assert best is not None
+    return best
 
 
 def _as_feet_change(steps: Steps, pelvis: Array, frame: int) -> int:
