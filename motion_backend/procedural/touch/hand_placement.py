@@ -41,9 +41,9 @@ PALM: Final = np.array(
 FOREARM: Final = np.array([[0.0, 0.042], [0.6, 0.034]])
 """Shares of a forearm from the elbow, and how thick it is there (metres at 1.70 m)."""
 TURNS, DEEPER = 31, 0.016
-"""So many turns of a grip are tried, and how deep a palm may be in the surface then (metres)."""
-SOON = 4
-"""So many frames before it would be deeper a hand has come off it."""
+"""So many turns of a grip are tried, and how much deeper a palm may be in the surface then (metres)."""
+DEEPEST, SOON = 0.03, 4
+"""No palm is in a surface deeper than this (metres): so many frames before it would be a hand has come off it."""
 
 
 def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleton, row: HandPlacement) -> Laid:
@@ -86,7 +86,7 @@ def lifted_off(whole: Pose, laid: Laid, skeleton: Skeleton) -> Pose:
     reach, frame = whole.reach.copy(), chest_frame(whole, skeleton)
     for index, wrist, _ in laid.hands:
         skin, _, _ = _palm_skin(Arm.of(whole, skeleton, index, frame), skeleton.scale)
-        deep = -((skin - wrist) @ laid.normal + HAND_REST).min(axis=1) - DEEPER
+        deep = -((skin - wrist) @ laid.normal + HAND_REST).min(axis=1) - DEEPEST
         over = maximum_filter1d(np.clip(deep, 0.0, None) * whole.reaching[:, index], 2 * SOON + 1, mode="nearest")
         reach[:, index] += gaussian_filter1d(over, SOON / 2, mode="nearest")[:, None] * laid.normal
     return replace(whole, reach=reach)

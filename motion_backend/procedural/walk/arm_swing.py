@@ -221,7 +221,9 @@ def _free(route: Route, index: int, arms: str, scale: float, depth: Depth) -> Ar
 
     row, side = arm_table().spread, 1.0 if index == 0 else -1.0
     wrist = np.asarray(arm_poses()[arms].wrist_arm_lengths) * [side, 1.0, 1.0]
-    out = np.array([side * row.shoulder_aside_m, row.shoulder_m, 0.0]) + ARM_LENGTH * np.outer(row.looked_at_arms, wrist)
+    out = np.array([side * row.shoulder_aside_m, row.shoulder_m, 0.0]) + ARM_LENGTH * np.outer(
+        row.looked_at_arms, wrist
+    )
     turned = rotations.rotate(rotations.yaw_to_quat(route.heading)[:, None], scale * out)
     turned[..., [0, 2]] += route.position[:, None]
     deep = depth(turned.reshape(-1, 3)).reshape(len(turned), -1).max(axis=1)

@@ -66,6 +66,8 @@ def walk_on(
     pace = 1 + row.pace_spread_share * luck
     style = replace(style.in_character(), release=end_yaw is not None, speed=style.speed * pace)
     speed, aside = style.speed * skeleton.scale, float(np.radians(style.aside))
+    if style.spin:
+        path, spun = _way_to_spin_on(path, style)
     if stride is None:
         route = plan_route(path, float(yaw_of(start.hips)), end_yaw, speed, fps, aside)
     else:
@@ -73,7 +75,7 @@ def walk_on(
         begun = plan_route(path, stride.heading, end_yaw, speed, fps, aside, stride.speed)
         route = begun.after(stride.place, stride.heading, stride.speed)
     if style.spin:
-        route = _with_spin(route, style.spin, fps)
+        route = _with_spin(route, style.spin, spun)
     if style.wobble:
         route = _staggering(route, style.wobble, rng, fps, room)
     route, steps = _stepping(start, route, style, skeleton, rng, stride, room)
@@ -194,16 +196,29 @@ def _stride_at(frame: int, path: Array, gone_m: float, route: Route, steps: Step
     )
 
 
-def _with_spin(route: Route, turns: float, fps: int) -> Route:
-    """Whole turns on the spot, half-way along where the body is fastest or at the end of a short way."""
+def _way_to_spin_on(path: Array, style: Walk) -> tuple[Array, Array]:
+    """A path (N, 2) without its end, over which whole turns are made, and that end. (M, 2) each.
+
+    Who runs stops there.
+    """
+    row, points = carriage().way, resample(path)
+    wanted = row.spin_mps * style.spin * 2 * np.pi / row.spin_rad_per_s * (style.double > 0)
+    split = max(len(points) - 1 - int(wanted / SPACING), len(points) // 2)
+    return points[: split + 1], points[split:]
+
+
+def _with_spin(route: Route, turns: float, spun: Array) -> Route:
+    """Whole turns made while going on along points (M, 2)."""
     row = carriage().way
-    frames = int((turns * 2 * np.pi / row.spin_rad_per_s + row.spin_eases_s) * fps)
-    at = len(route.heading) - 1
-    angle = 2 * np.pi * turns * evenly(frames, fps)
+    frames = int((turns * 2 * np.pi / row.spin_rad_per_s + row.spin_eases_s) * FPS)
+    share = evenly(frames, FPS)
+    along = share * (len(spun) - 1)
+    places = np.stack([np.interp(along, np.arange(len(spun)), spun[:, axis]) for axis in (0, 1)], axis=1)
+    speed = np.linalg.norm(np.diff(places, axis=0, prepend=spun[:1]), axis=1) * FPS
     return Route(
-        np.concatenate([route.position, np.repeat(route.position[at : at + 1], frames, axis=0)]),
-        np.concatenate([route.heading, route.heading[at] + angle]),
-        np.concatenate([route.speed, np.zeros(frames)]),
+        np.concatenate([route.position, places]),
+        np.concatenate([route.heading, route.heading[-1] + 2 * np.pi * turns * share]),
+        np.concatenate([route.speed, speed]),
     )
 
 
