@@ -130,7 +130,8 @@ def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:
     furniture = Keyframe.model_construct(skill=Skill.LOCO, caption="", furniture=_furniture_of(row))
     if not furniture.on_floor and not is_known(furniture.piece[0]):
         words = sorted(map(display_name, catalogue().class_of))
-        near = _nearest(furniture.piece[0], words) or '; "floor" needs none'
+        spelt_alike = get_close_matches(furniture.piece[0], list(dict.fromkeys(words)), n=SUGGESTED, cutoff=0.4)
+        near = _perhaps(spelt_alike) or '; "floor" needs none'
         faults.append(f"{where}, furniture: {furniture.furniture!r:.80} is not known{near}")
         return None
     return keyframe
@@ -168,11 +169,6 @@ def _meant(keyframe: Keyframe, caption: str, rows: Sequence[str], words: Vocabul
     misspelt = get_close_matches(caption, list(dict.fromkeys(rows)), n=1, cutoff=MISSPELT)
     moody = [] if keyframe.mood is Emotion.NEUTRAL else [usual(keyframe.skill, keyframe.mood, caption)]
     return [one for one in dict.fromkeys([*misspelt, *words.near(keyframe.skill, caption), *moody]) if one in rows]
-
-
-def _nearest(word: str, known: Sequence[str]) -> str:
-    """Known words that are spelt much like another."""
-    return _perhaps(get_close_matches(word, list(dict.fromkeys(known)), n=SUGGESTED, cutoff=0.4))
 
 
 def _perhaps(found: Sequence[str]) -> str:

@@ -135,7 +135,8 @@ def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, extra: 
     """Make a story, write its files and say how it went, with a bar while it takes."""
     from planner_service.output.story_export import write_story
 
-    with _bar(console) as bar:
+    columns = (TextColumn("{task.description:<42}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console) as bar:
         task = bar.add_task(TOLD["plan"], total=1.0)
 
         def show(stage: str, share: float) -> None:
@@ -192,10 +193,6 @@ def read_rooms(argument: str) -> tuple[str, ...]:
     if not rooms:
         raise RequestError(f"there is no room in {argument!r}", f"choose among {', '.join(ROOM_TYPES)}", at="rooms")
     return rooms
-
-
-def _bar(console: Console) -> Progress:
-    return Progress(TextColumn("{task.description:<42}"), BarColumn(), TimeElapsedColumn(), console=console)
 
 
 def _close(console: Console, made: Story, files: list[Path]) -> None:

@@ -44,7 +44,7 @@ def serve_beats(
 ) -> LongScript:
     """The long script of a theme, beat by beat. ThemeError when nothing of it can be acted."""
     planned = _by_model(theme, library, request, model, record)
-    read = _read_anew(planned) if planned else beats_of(theme)
+    read = tuple(read_beat(one.beat) for one in planned.beats) if planned else beats_of(theme)
     reader = _reader(read, library, request)
     read = read if planned else tuple(map(reader.heard, read))
     parts = {} if request.method == "direct" else PartFinder(library, reader, request.rooms).all_of(read)
@@ -126,11 +126,6 @@ def _named_part(served: PlannedBeat, library: ScriptLibrary) -> Part | None:
     if script is None:
         return None
     return Part(script, float(rank([served.beat.text], library)[0][library.scripts.index(script)]), ())
-
-
-def _read_anew(planned: PlannedTheme) -> tuple[ReadBeat, ...]:
-    """The model's beats with what of their words the rules go by."""
-    return tuple(read_beat(one.beat) for one in planned.beats)
 
 
 def _with_reasons(
