@@ -74,6 +74,10 @@ _GETS_THERE: Final = re.compile(
     r"\b(?:down|into|onto|back|under|climbs?|crawls?|falls?|flops?|goes|go|went|gets?|got|drops?|collapses?|curls?)\b"
 )
 """Words that tell of lying down, not of lying there."""
+_LOW_DOWN: Final = re.compile(
+    r"\b(?:under\w*|beneath|below|behind|floor\w*|ground|rug|carpet|tiles|low\w*|bottom|kne\w+|crawl\w*|crouch\w*|prone)\b"
+)
+"""Words of what hands get down on the floor for."""
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
@@ -233,10 +237,13 @@ class KeyframeWriter:
         return deed
 
     def _rises_later(self, index: int, beats: Sequence[ReadBeat]) -> bool:
-        """Whether somebody gets or sits up next: who wakes before that stays in bed."""
+        """Whether somebody gets or sits up next, or is told to lie there: who wakes before that stays in bed."""
         deeds = ((one, self.reader.deed(one.clause)) for one in beats[index + 1 :] if one.beat.kind == "deed")
         later, deed = next(((one, deed) for one, deed in deeds if deed is not None), (None, None))
-        return later is not None and deed is not None and (deed.skill in RISINGS or sits_up(later, deed))
+        if later is None or deed is None:
+            return False
+        stays = deed.skill is Skill.LIEDOWN and not (_GETS_THERE.search(later.text) or "asleep" in later.text)
+        return deed.skill in RISINGS or sits_up(later, deed) or (stays and later is beats[index + 1])
 
     def _try(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool) -> None:
         """Do it, or leave it out where what would be done only stands for it and is too much for that."""
@@ -272,7 +279,9 @@ class KeyframeWriter:
                 self.body.show(index)
             case Skill.LOCO if deed.row.seated and resting is not None and resting.skill is Skill.SITDOWN:
                 self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
-            case Skill.LOCO if deed.row.seated and lies(self.body.resting) and not deed.named:
+            case Skill.LOCO if deed.row.lying and lies(resting) and not deed.named:
+                self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
+            case Skill.LOCO if deed.row.seated and lies(resting) and not deed.named:
                 self.body.show(index)  # "lies there and stares at the wall"
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
@@ -293,9 +302,7 @@ class KeyframeWriter:
 
     def _is_on_body(self, index: int, read: ReadBeat) -> bool:
         """Whether what hands would do it to is held or worn already: nobody walks to it, and it is not seen."""
-        holds = is_held(read.clause) or (
-            read.clause.verb in ("hold", "clutch") and self.body.whereabouts.holds(read.clause)
-        )
+        holds = is_held(read.clause) or self.body.whereabouts.in_hand(read.clause)
         worn = is_worn(read.clause) and not pieces_in(read.clause.text)
         if not (holds or worn):
             return False
@@ -320,9 +327,8 @@ class KeyframeWriter:
     def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
         """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
         would only stand for it."""
-        stands_in = bool(deed.row.captions) and not any(
-            shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
-        )
+        shown = deed.is_gesture or any(shows(Skill.LOCO, one, read.clause) for one in deed.row.captions)
+        stands_in = bool(deed.row.captions) and not shown
         rests = self.body.resting is not None and not deed.named and not deed.row.seated
         return rests and (stands_in or (is_beside(read) and deed.row.captions == _STANDING.captions))
 
@@ -410,6 +416,10 @@ class KeyframeWriter:
                 self.body.show(index)
                 return
             caption = others[0]
+        if deed.is_gesture and not deed.row.walks and piece != "floor":  # gone to, then done there
+            if not self.body.is_there(piece, read.room):
+                self.body.put(index, Skill.LOCO, mood, usual(Skill.LOCO, mood), piece, read.room)
+            piece = "floor"
         self.body.put(index, Skill.LOCO, mood, caption, piece, read.room)
         self.body.resting = None
         if deed.named and piece != "floor":
@@ -482,7 +492,8 @@ class KeyframeWriter:
             caption = others[0]
         self.body.is_there(piece, room)
         for here in self.keyframes[-1:]:  # where one is nobody walks to
-            room = here.room if here.furniture == piece != "floor" and None in (room, here.room) else room
+            same = here.furniture == piece and (piece != "floor" or self.body.resting is not None)
+            room = here.room if same and None in (room, here.room) else room
         self.body.put(index, skill, mood, caption, piece, room)
         self._lay(read, skill)
         return True
@@ -508,7 +519,10 @@ class KeyframeWriter:
         """One caption by the seed, of those that are likeliest to show it and that the library uses in the mood."""
         captions = self.reader.likeliest(self._clause, skill, captions) if self._clause else captions
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
-        options = fitting(told or captions, skill, mood)
+        standing = [
+            one for one in captions if "prone" not in one or self._clause is None or _LOW_DOWN.search(self._clause.text)
+        ]
+        options = fitting(told or standing or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
 
 

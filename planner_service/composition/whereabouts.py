@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from planner_service.composition.deed_lexicon import Deed, object_of
+from planner_service.themes.lexicon import grammar, is_noun
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from scene_graphs.furniture import class_of
@@ -17,6 +18,8 @@ _MEANT: Final = frozenset(("it", "them", "one"))
 """Words for what was named before."""
 _SUPPORTS: Final = frozenset(("table", "closet", "shelf", "side", "media"))
 """Classes of furniture that only bear or keep a thing: what is done there may be done at another of them."""
+_IN_HAND: Final = frozenset(["hold", "clutch", "close", "shut", "fold", "unfold", "refold"])
+"""What is so is done in the hands, where the thing is in them."""
 _HELD: Final = re.compile(
     r"(?:holding|clutching|hugging|cradling|gripping|grasping|carrying|wearing|still holding)\b", re.IGNORECASE
 )
@@ -33,6 +36,18 @@ def is_held(clause: Clause) -> bool:
 def is_worn(clause: Clause) -> bool:
     """Whether hands do it in somebody's own clothes: "found them in his pocket"."""
     return bool(_WORN.search(clause.text))
+
+
+def _head_of(clause: Clause) -> str:
+    """The last of the nouns that name what a clause's deed is done to: of "the photo album" the album."""
+    noun = object_of(clause)
+    at = clause.lemmas.index(noun, 1) if noun else 0
+    others = grammar().adverbs | grammar().prepositions | grammar().marks
+    for after in clause.lemmas[at + 1 :] if noun else ():
+        if after in others or not is_noun(after):
+            break
+        noun = after
+    return noun
 
 
 @dataclass
@@ -66,9 +81,9 @@ class Whereabouts:
             self._spots.setdefault(noun, []).append(spot)
             self._held.discard(noun)
 
-    def holds(self, clause: Clause) -> bool:
-        """Whether what a clause is about is in the hands."""
-        return self._thing(clause) in self._held
+    def in_hand(self, clause: Clause) -> bool:
+        """Whether a clause's deed is done in the hands, to what is in them: who took the album "closes the album"."""
+        return clause.verb in _IN_HAND and self._thing(clause) in self._held
 
     def of(self, clause: Clause, deed: Deed) -> Spot | None:
         """Where the thing is that hands do a deed to: where it was last, where it came from for "puts it back"; None
@@ -91,7 +106,7 @@ class Whereabouts:
     def _thing(self, clause: Clause) -> str:
         """What a clause's deed is done to."""
         meant = self._named if _MEANT & set(clause.lemmas[1:4]) else ""
-        return meant or object_of(clause)
+        return meant or _head_of(clause)
 
     def _comes_out(self, clause: Clause) -> bool:
         """Whether a thing is taken out of what was opened just before."""
