@@ -338,6 +338,10 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "trunk_tilt": lambda body: _angle(_trunk(body), np.array([0.0, 1.0, 0.0])),
     "face_down": lambda body: _pitch(_front(body, "head")),
     "face_left": lambda body: (_yaw(_front(body, "head")) - _yaw(_heading(body)) + 180) % 360 - 180,
+    # Degrees a second: how fast the trunk bends, and the face nods and turns, whichever way.
+    "trunk_pace": lambda body: np.abs(_slope(MEASURES["trunk_pitch"](body), body.motion.fps)),
+    "nod_pace": lambda body: np.abs(_slope(MEASURES["face_down"](body), body.motion.fps)),
+    "turn_pace": lambda body: np.abs(_slope(np.unwrap(MEASURES["face_left"](body), period=360), body.motion.fps)),
     # Degrees: how far the trunk sways from side to side in all, and the hips turn in all; off the way that is gone.
     "trunk_sway": lambda body: _in_all(_trunk_aside(body)),
     "turned": lambda body: _in_all(_yaw(_heading(body))),

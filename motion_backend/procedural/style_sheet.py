@@ -28,6 +28,7 @@ Degrees = Annotated[float, Unit("deg")]
 Radians = Annotated[float, Unit("rad")]
 Metres = Annotated[float, Unit("m")]
 MetresPerSecond = Annotated[float, Unit("m_per_s")]
+Seconds = Annotated[float, Unit("s")]
 ArmLengths = Annotated[float, Unit("arm_lengths")]
 Ratio = Annotated[float, Unit("ratio")]
 """Against what is usual: 1 is as usual."""

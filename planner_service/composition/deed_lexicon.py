@@ -213,7 +213,8 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     )
     if skill is Skill.LIEDOWN and seated and not (_FLOOR.search(clause.text) or _UNDER.search(clause.text)):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
-    if need is None and (rested := _at_rest(found, named)):
+    on = [*pieces_in(clause.text), *(["floor"] if _FLOOR.search(clause.text) else [])]
+    if need is None and (rested := _at_rest(found, on)):
         return rested
     if need is None:
         goals = [piece for place in _BROUGHT_TO.findall(clause.text) for piece in pieces_in(place)]
@@ -233,10 +234,10 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
 
 def _at_rest(row: DeedRow, named: Sequence[str]) -> Deed | None:
     """What is done sitting or lying on what is named, of what is else done on one's feet: "weeps on the bed"."""
-    for skill, captions in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
+    for skill, some in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
         fitting = tuple(piece for piece in named if affords(piece, NEEDS[skill]))
-        if row.skill is Skill.LOCO and captions and fitting:
-            return Deed(replace(row, skill=skill, captions=captions, rests=True), skill, fitting, True)
+        if row.skill is Skill.LOCO and some and fitting:
+            return Deed(replace(row, skill=skill, captions=some, rests=True), skill, fitting, True)
     return None
 
 
@@ -294,7 +295,7 @@ def typical_of(text: str) -> list[str]:
 def _may_be_noun(lemma: str) -> bool:
     """Whether a word is a noun, and no mark or numeral that a dictionary has as one."""
     known = grammar()
-    return is_noun(lemma) and lemma not in known.marks | known.numbers | known.prepositions | {"one"}
+    return is_noun(lemma) and lemma not in known.marks | known.numbers | known.prepositions | _PUT | {"one"}
 
 
 def object_of(clause: Clause) -> str:

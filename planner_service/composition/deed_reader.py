@@ -16,7 +16,14 @@ from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
 from planner_service.composition.caption_senses import contradicted, is_shown, shows
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, is_another, pieces_in
+from planner_service.composition.deed_lexicon import (
+    Deed,
+    DeedRow,
+    captions_of_gestures,
+    deed_of,
+    is_another,
+    pieces_in,
+)
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of
 from planner_service.scripts.acted_beats import RESTS
@@ -315,7 +322,7 @@ def _without(deed: Deed | None, never: Sequence[str]) -> Deed | None:
 def _in_particular(deed: Deed, likely: Likely, clause: Clause) -> Deed:
     """A deed of which the table has no more than its skill, with the captions that show how it is done: "sits
     upright"; none in which hands do what is not told of."""
-    row, known = deed.row, captions()[deed.skill.value]
+    row, known = deed.row, _learned(deed.skill)
     if row.captions or row.why or deed.skill is not row.skill:
         return deed
     most = likely.of(deed.skill, known)
@@ -335,6 +342,11 @@ def _rising(deed: Deed, likely: Likely) -> Skill:
     if deed.named:
         return deed.skill if any(affords(piece, "lie") for piece in deed.pieces) else Skill.STANDUP
     return max(RISINGS, key=lambda one: likely.of(one, captions()[one.value]))
+
+
+def _learned(skill: Skill) -> list[str]:
+    """The captions of a skill that were learned."""
+    return [one for one in captions()[skill.value] if (skill, one) not in captions_of_gestures()]
 
 
 def seated_as_well(likely: Likely) -> tuple[str, ...]:
@@ -372,7 +384,7 @@ def learned_row(clause: Clause, likely: Likely) -> DeedRow:
         return tuple(one for (kind, one), share in likely.captions.items() if kind is other and share >= least)
 
     some = of(skill)
-    everything = len(some) > ANY * len(captions()[skill.value])
+    everything = len(some) > ANY * len(_learned(skill))
     return DeedRow(
         (clause.verb or clause.text,),
         skill,

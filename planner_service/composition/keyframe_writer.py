@@ -16,7 +16,7 @@ import numpy as np
 
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.body_track import BodyTrack
-from planner_service.composition.caption_senses import shows
+from planner_service.composition.caption_senses import only_in, shows
 from planner_service.composition.deed_lexicon import (
     Deed,
     DeedRow,
@@ -30,6 +30,7 @@ from planner_service.composition.deed_lexicon import (
 )
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
+from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
 from planner_service.composition.stand_in import is_too_much
@@ -456,6 +457,8 @@ class KeyframeWriter:
     ) -> bool:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
+        if part is not None and is_gainsaid(read.clause, part.keyframes[-1:]):
+            part = None
         at = next((one.furniture for one in self.keyframes[:-3:-1] if not one.on_floor), "floor")
         by_pronoun = deed.named and bool({"it", "them"} & {*read.clause.lemmas}) and not pieces_in(read.clause.text)
         meant = replace(deed, named=deed.named and not by_pronoun)  # "it" is the parcel, not the table it was set on
@@ -517,13 +520,23 @@ class KeyframeWriter:
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that are likeliest to show it and that the library uses in the mood."""
-        captions = self.reader.likeliest(self._clause, skill, captions) if self._clause else captions
+        if self._clause is not None:
+            captions = _seen(self._clause, skill, captions)
+            captions = self.reader.likeliest(self._clause, skill, captions)
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
-        standing = [
-            one for one in captions if "prone" not in one or self._clause is None or _LOW_DOWN.search(self._clause.text)
-        ]
-        options = fitting(told or standing or captions, skill, mood)
+        options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
+    """Those of some captions that a deed may be seen in: the only ones that show it, of the skill's where they have
+    none, and nobody gets down on the floor for what is not told to be low."""
+    only = [[one for one in those if any(part in one.lower() for part in only_in(clause) or ())]
+            for those in (some, captions()[skill.value])]  # fmt: skip
+    if any(only):
+        return only[0] or only[1]
+    standing = [one for one in some if "prone" not in one or _LOW_DOWN.search(clause.text)]
+    return standing or (TOUCHES if skill is Skill.TOUCH else some)
 
 
 def _is_at(keyframe: PlannedKeyframe, deed: Deed) -> bool:

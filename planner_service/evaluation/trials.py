@@ -30,7 +30,7 @@ from motion_backend.metrics.skin_penetration import THIN, skin_penetration
 from motion_backend.metrics.smoothness import bone_deviation, jerk_against_real, seam_jump, seam_speed_jump
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Skill, join
 from motion_backend.procedural.touch.hand_captions import handling_of
-from motion_backend.procedural.touch.hand_contacts import is_top
+from motion_backend.procedural.touch.hand_contacts import ON_TOPS, is_top
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import Place, UnreachableError, act, can_stand, height_of
 from planner_service.scripts.caption_actions import look_of
@@ -65,7 +65,7 @@ _WITH_ARMRESTS: Final = frozenset({"armchair", "multi_seat_sofa", "loveseat_sofa
 
 _SAT_ON: Final = frozenset({"seat", "sofa"})
 _HUNG: Final = frozenset({"pendant_lamp", "ceiling_lamp", "wall_lamp"})
-_ON_TOPS: Final = frozenset({"pick", "put", "wash"})
+_ON_TOPS: Final = ON_TOPS | {"wash"}
 
 
 @dataclass(frozen=True, order=True)

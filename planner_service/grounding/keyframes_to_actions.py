@@ -20,6 +20,7 @@ from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill, mome
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_contacts import suits
+from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
 from planner_service.grounding.opening_places import LACKS, OpeningPlace, entry, opening_place
@@ -39,8 +40,6 @@ from scene_graphs.layout import Placed
 from scene_graphs.navigation.path_planner import Walkable
 
 Point = tuple[float, float]
-_STAYS: Final = re.compile(r"\bstand(s|ing)? (still|there|motionless)|\bwav(e|es|ing)\b", re.IGNORECASE)
-_GOES: Final = re.compile(r"\b(walk|run|step|pac|stroll|danc|rush|march|skip)", re.IGNORECASE)
 _FRONT: Final = re.compile(r"\b(?:front|forward|ahead)[ ,a-z]*?\b(left|right)\b", re.IGNORECASE)
 _TO_THE_SIDE: Final = np.radians([40.0, 50.0, 30.0, 60.0, 70.0])
 """How far to the side of where the body looks its front left is, the best first."""
@@ -60,9 +59,9 @@ A_STEP: Final = 0.9
 """A place to stand so near to where the body stands is not walked round a thing for (metres)."""
 
 
-def stays(caption: str) -> bool:
-    """Whether a caption of loco leaves the body where it is ("stand still", "wave with the right hand")."""
-    return bool(_STAYS.search(caption)) and not _GOES.search(caption)
+def stays(caption: str) -> float:
+    """For how many seconds a caption of loco leaves the body where it is ("stand still", "clapping hands"); 0 goes."""
+    return walk_style(Emotion.NEUTRAL, caption).stays
 
 
 def heading_after(done: Sequence[tuple[Action, Point | None]], walkable: Walkable) -> float | None:
@@ -248,7 +247,8 @@ class _Stage:
         self.resting = self.on or self.resting
         self.at = action.spot.standing if action.spot is not None else self.at
         self.walks_on = action.skill is Skill.LOCO or (self.walks_on and action.spot is None)
-        return replace(action, keyframe=index, hold=HOLDS.get(action.skill, Action.hold))
+        hold = stays(action.caption) if action.skill is Skill.LOCO else 0.0
+        return replace(action, keyframe=index, hold=HOLDS.get(action.skill, hold or Action.hold))
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
         need = NEEDS[keyframe.skill]
@@ -428,9 +428,9 @@ class _Stage:
         ahead = in_front(action.caption, self.walkable, at, done) if wanders else None
         if ahead is not None:
             return replace(action, goal=ahead, facing=None)
-        if wanders and stays(action.caption):
-            return action
-        walk = self._walk(action, following, place, leg)
+        if wanders and (seconds := stays(action.caption)):
+            return replace(action, hold=seconds)
+        walk = replace(self._walk(action, following, place, leg), stands=stays(action.caption))
         return self._run(walk, place.room, at) if at is not None and runs(action) else walk
 
     def _run(self, action: Action, room: int, at: Point) -> Action:
@@ -448,7 +448,7 @@ class _Stage:
         found = opening_place(self.home, self.walkable, kind, place.room, at)
         if found is None:
             return replace(action, lacks=LACKS[kind])
-        stands = LOOKS_OUT if stays(action.caption) else 0.0
+        stands = max(seconds, LOOKS_OUT) if (seconds := stays(action.caption)) else 0.0
         return replace(action, goal=found.standing, facing=found.facing, stands=stands)
 
     def _walk(self, action: Action, following: Action | None, place: Place, leg: _Leg) -> Action:

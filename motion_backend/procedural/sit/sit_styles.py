@@ -53,7 +53,7 @@ class Seated:
     own: OwnSeat = NOBODY
     """What this time of sitting has of its own."""
     doing: str = ""
-    """What the hands do while seated: a name in `gestures.GESTURES`."""
+    """What the hands do while seated: one of `gestures.gesture_names`."""
 
 
 AT_REST = 9.0

@@ -1,4 +1,4 @@
-"""What hands do while a pose is held: write, type, play, drink, eat, read, keep time, wave (LINGO Table A1).
+"""What hands, trunk and legs do while a pose is held: write, play, drink, clap, laugh, stretch, squat (LINGO Table A1).
 
 The numbers are rows of data/gestures.toml.
 """
@@ -15,19 +15,44 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays
-from motion_backend.procedural.pose import Pose, smooth
+from motion_backend.procedural.pose import ROTATIONS, Pose, interpolate, smooth
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH
 from scene_graphs.data_tables import read_table, table
+
+STANDS: Final = 0.895
+"""A standing pelvis (metres at 1.70 m)."""
+_FINGERS: Final = np.array([[0.6, 0.0, 0.8], [0.6, 0.0, -0.8]])
+_BACKS: Final = np.array([[0.0, -1.0, 0.0], [0.0, -1.0, 0.0]])
+PALMS_UP: Final = rotations.basis_to_quat(_FINGERS, _BACKS, rotations.cross(_FINGERS, _BACKS))
+"""Both hands against where the body faces: palms up, fingers ahead and outwards."""
+
+
+@table
+class Burst:
+    """A wave that comes and goes: so often, for so long each time, growing and fading over so long."""
+
+    every_s: float
+    lasts_s: float
+    rises_s: float = 0.12
+    after_s: float = 0.0
+    """When the first one begins."""
+
+    def share(self, time: Array) -> Array:
+        """How much of the wave is there at times (T,). (T,)."""
+        since = (time - self.after_s) % self.every_s
+        return smooth(since / self.rises_s) * smooth((self.lasts_s - since) / self.rises_s) * (time >= self.after_s)
 
 
 @table
 class HandWave:
     """One wave that a hand is moved by."""
 
-    rate_hz: float
-    hand: Literal["left", "right", "raised"] = "right"
+    rate_hz: float | None = None
+    """Without one the hand goes there and stays."""
+    hand: Literal["left", "right", "raised", "both"] = "right"
+    """Both of them go as in a mirror."""
     left_arms: float = 0.0
     """How far to the left, up and ahead it goes (arm lengths)."""
     up_arms: float = 0.0
@@ -36,11 +61,20 @@ class HandWave:
     """Where in its period it begins."""
     taps: bool = False
     """Whether only its upper half is gone through: up between strokes and down on them."""
+    burst: Burst | None = None
 
     def offsets(self, time: Array) -> Array:
         """At times (T,): to the left, up and ahead. (T, 3)."""
-        wave = _wave_of(self.rate_hz, time, self.phase_share)
+        wave = wave_of(self.rate_hz, time, self.phase_share, self.burst)
         return (np.maximum(wave, 0.0) if self.taps else wave)[:, None] * [self.left_arms, self.up_arms, self.ahead_arms]
+
+    def of_hand(self, index: int, raised: Array) -> Array | float:
+        """How much of it the left (0) or right hand (1) goes, to the left, up and ahead; `raised` says when it is."""
+        if self.hand == "raised":
+            return raised[:, None]
+        if self.hand == "both":
+            return np.array([1.0 - 2.0 * index, 1.0, 1.0])
+        return float(self.hand == ("left", "right")[index])
 
 
 @table
@@ -48,22 +82,74 @@ class TrunkWave:
     """One wave that trunk or head bends in."""
 
     part: Literal["spine", "head"]
-    rate_hz: float
+    rate_hz: float | None = None
     forward_rad: float = 0.0
     turn_rad: float = 0.0
     side_rad: float = 0.0
+    phase_share: float = 0.0
+    burst: Burst | None = None
 
     def bends(self, time: Array) -> Array:
         """At times (T,): forwards, to the left and to the side. (T, 3)."""
-        return _wave_of(self.rate_hz, time)[:, None] * [self.forward_rad, self.turn_rad, self.side_rad]
+        bend = [self.forward_rad, self.turn_rad, self.side_rad]
+        return wave_of(self.rate_hz, time, self.phase_share, self.burst)[:, None] * bend
 
 
 @table
-class Waves:
-    """A gesture that is nothing but waves, each added to the ones before."""
+class MoveKey:
+    """A key pose of what is done again and again, against the pose that is held."""
 
-    hands: tuple[HandWave, ...]
+    at_share: float
+    """When in its time."""
+    arms: tuple[str, str] = ("", "")
+    """Poses of styles/arms.toml for the left and the right; as they are held where that is empty."""
+    palms_up: bool = False
+    """Whether palms look up, fingers ahead and outwards."""
+    spine_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Forwards, to the left, to the side."""
+    head_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    hips_forward_rad: float = 0.0
+    pelvis_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """To the left, up, ahead, at 1.70 m."""
+    right_foot_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    right_foot_down_rad: float = 0.0
+    """How far its tip points down."""
+
+    def pose(self, held: Pose) -> Pose:
+        """That key of a single held pose."""
+        heading, scale = rotations.yaw_to_quat(yaw_of(held.hips)), float(held.pelvis[1]) / STANDS
+        named = np.array([bool(name) for name in self.arms])
+        wrists, poles = arm_arrays(*(name or "hang" for name in self.arms))
+        lifted = np.array([False, any(self.right_foot_m)])
+        foot = scale * rotations.rotate(heading, np.array(self.right_foot_m))
+        down = rotations.axis_to_quat("x", np.array([0.0, self.right_foot_down_rad]))
+        return replace(
+            held,
+            pelvis=held.pelvis + scale * rotations.rotate(heading, np.array(self.pelvis_m)),
+            hips=rotations.compose(held.hips, rotations.axis_to_quat("x", np.array(self.hips_forward_rad))),
+            spine=held.spine + self.spine_rad,
+            head=held.head + self.head_rad,
+            ankles=held.ankles + lifted[:, None] * foot,
+            feet=rotations.compose(held.feet, down),
+            arms=np.where(named[:, None], wrists, held.arms),
+            elbows=np.where(named[:, None], poles, held.elbows),
+            # A hand that goes elsewhere leaves what it may have been laid on.
+            reaching=np.where(named, 0.0, held.reaching),
+            palms=rotations.compose(heading, PALMS_UP) if self.palms_up else held.palms,
+            pressing=np.where(named, float(self.palms_up), held.pressing),
+            planted=np.where(lifted, 0.0, held.planted),
+        )
+
+
+@table
+class Move:
+    """A gesture that is waves, each added to the ones before, and key poses that are gone through."""
+
+    hands: tuple[HandWave, ...] = ()
     trunk: tuple[TrunkWave, ...] = ()
+    every_s: float = 1.0
+    """About how long it takes to go through the keys and back to the pose that is held."""
+    keys: tuple[MoveKey, ...] = ()
 
 
 @table
@@ -79,17 +165,6 @@ class Writing:
     """So far to the right of where the hand was a line begins."""
     across: HandWave
     along: HandWave
-
-
-@table
-class ToTheMouth:
-    """A sip or a bite."""
-
-    bite_s: float
-    rise_share: float
-    """Of its time spent on the way up."""
-    lower_share: float
-    head_forward_rad: float
 
 
 @table
@@ -128,10 +203,9 @@ class Gestures:
     ease_s: float
     """A gesture grows out of the held pose, and back into it, over this long."""
     write: Writing
-    mouth: ToTheMouth
     read: Reading
     music: Music
-    waves: dict[str, Waves]
+    moves: dict[str, Move]
 
 
 def gesture_table() -> Gestures:
@@ -141,17 +215,19 @@ def gesture_table() -> Gestures:
 
 
 def gesture(held: Pose, doing: str) -> Pose:
-    """A held pose of T frames with hands that do something; as it was where `doing` names nothing in `GESTURES`."""
-    if doing not in GESTURES:
+    """A held pose of T frames with hands that do something; as it was where `doing` is none of `gesture_names`."""
+    if doing not in gesture_names():
         return held
     time = np.arange(1, len(held) + 1) / FPS
     seconds = gesture_table().ease_s
     ease = smooth(time / seconds) * smooth((time[-1] - time) / seconds)
-    return GESTURES[doing](held, time, ease)
+    return _OWN.get(doing, partial(_move, doing=doing))(held, time, ease)
 
 
-def _wave_of(rate: float, time: Array, phase: float = 0.0) -> Array:
-    return np.asarray(np.sin(2 * np.pi * (rate * time + phase)))
+def wave_of(rate: float | None, time: Array, phase: float = 0.0, burst: Burst | None = None) -> Array:
+    """A wave of unit size at times (T,), as far as a burst has it. (T,)."""
+    wave = np.sin(2 * np.pi * (rate * time + phase)) if rate else np.ones_like(time)
+    return np.asarray(wave if burst is None else burst.share(time) * wave)
 
 
 def _moved(held: Pose, left: Array, right: Array, ease: Array) -> Pose:
@@ -161,21 +237,35 @@ def _moved(held: Pose, left: Array, right: Array, ease: Array) -> Pose:
     return replace(held, arms=held.arms + offsets, reach=held.reach + ARM_LENGTH * rotations.rotate(heading, offsets))
 
 
-def _in_waves(held: Pose, time: Array, ease: Array, waves: str) -> Pose:
-    """Hands, trunk and head moved by the waves of that name."""
-    rows = gesture_table().waves[waves]
-    offsets, raised = np.zeros((2, len(time), 3)), held.arms[:, :, 1] > 0
+def _move(held: Pose, time: Array, ease: Array, doing: str) -> Pose:
+    """The key poses and the waves of that name."""
+    rows = gesture_table().moves[doing]
+    held = _through_keys(held, time, rows) if rows.keys else held
+    offsets, raised = np.zeros((2, len(time), 3)), np.where(held.arms[:, :, 1] > 0, 1.0, 0.0)
     for row in rows.hands:
-        for index, hand in enumerate(("left", "right")):
-            if row.hand == hand:
-                offsets[index] += row.offsets(time)
-            elif row.hand == "raised":
-                offsets[index] += raised[:, index, None] * row.offsets(time)
+        for index in (0, 1):
+            offsets[index] += row.of_hand(index, raised[:, index]) * row.offsets(time)
     moved = _moved(held, offsets[0], offsets[1], ease)
     for bend in rows.trunk:
         part = getattr(moved, bend.part) + ease[:, None] * bend.bends(time)
         moved = replace(moved, spine=part) if bend.part == "spine" else replace(moved, head=part)
     return moved
+
+
+def _through_keys(held: Pose, time: Array, rows: Move) -> Pose:
+    """T frames of a held pose that go through the keys and back, as often as there is time for."""
+    base, times = held.at(0), max(round(float(time[-1]) / rows.every_s), 1)
+    once = [(0.0, base), *((key.at_share, key.pose(base)) for key in rows.keys)]
+    every = [(turn + share, pose) for turn in range(times) for share, pose in once] + [(float(times), base)]
+    way = interpolate([share * float(time[-1]) / times for share, _ in every], [pose for _, pose in every], FPS)
+    added = ("pelvis", "spine", "head", "ankles", "arms", "elbows", "reaching", "pressing")
+    moved = {name: getattr(held, name) + getattr(way, name) - getattr(base, name) for name in added}
+    turned = {
+        name: rotations.compose(getattr(held, name), rotations.compose(rotations.inverse(start), getattr(way, name)))
+        for name in ROTATIONS
+        for start in [getattr(base, name)]
+    }
+    return replace(held, planted=np.minimum(held.planted, way.planted), **moved, **turned)
 
 
 def _write(held: Pose, time: Array, ease: Array) -> Pose:
@@ -188,31 +278,6 @@ def _write(held: Pose, time: Array, ease: Array) -> Pose:
     return _moved(held, np.zeros_like(strokes), strokes, ease)
 
 
-def _to_the_mouth(held: Pose, time: Array, ease: Array, index: int = 1) -> Pose:
-    """A hand (0 left, 1 right) rises to the mouth, stays a moment and goes down, as often as there is time for."""
-    row = gesture_table().mouth
-    times = max(round(float(time[-1]) / row.bite_s), 1)
-    share = (time / time[-1] * times) % 1.0
-    share[-1] = 0.0
-    lifted = (smooth(share / row.rise_share) * smooth((1.0 - share) / row.lower_share))[:, None]
-    wrists, elbows = arm_arrays("mouth", "mouth")
-    arms, poles, head = held.arms.copy(), held.elbows.copy(), held.head.copy()
-    arms[:, index] += lifted * (wrists[index] - arms[:, index])
-    poles[:, index] += lifted * (elbows[index] - poles[:, index])
-    # A hand that rises leaves what it may have been laid on.
-    free = np.zeros_like(held.reaching)
-    free[:, index] = lifted[:, 0]
-    head[:, 0] += row.head_forward_rad * ease * lifted[:, 0]
-    return replace(
-        held,
-        arms=arms,
-        elbows=poles,
-        head=head,
-        reaching=held.reaching * (1 - free),
-        pressing=held.pressing * (1 - free),
-    )
-
-
 def _read(held: Pose, time: Array, ease: Array) -> Pose:
     """The eyes go along the lines and down the page; now and then the right hand turns a leaf over."""
     row = gesture_table().read
@@ -223,30 +288,23 @@ def _read(held: Pose, time: Array, ease: Array) -> Pose:
     sweep = over[:, None] * [row.leaf_left_arms, row.leaf_up_arms, row.leaf_ahead_arms]
     head = held.head.copy()
     head[:, 0] += ease * row.down_rad * (page - 0.5)
-    head[:, 1] += ease * row.scan_rad * _wave_of(row.scan_hz, time)
+    head[:, 1] += ease * row.scan_rad * wave_of(row.scan_hz, time)
     return _moved(replace(held, head=head), np.zeros_like(sweep), sweep, ease)
 
 
 def _music(held: Pose, time: Array, ease: Array) -> Pose:
     """The head nods and the trunk sways with the beat; the hands stay at the ears."""
     row = gesture_table().music
-    nod = ease * row.nod_rad * _wave_of(row.nod_hz, time)
-    sway, still = ease * row.sway_rad * _wave_of(row.sway_hz, time), np.zeros_like(nod)
+    nod = ease * row.nod_rad * wave_of(row.nod_hz, time)
+    sway, still = ease * row.sway_rad * wave_of(row.sway_hz, time), np.zeros_like(nod)
     spine = held.spine + np.stack([row.spine_nod_share * nod, still, sway], axis=1)
     return replace(held, head=held.head + np.stack([nod, still, still], axis=1), spine=spine)
 
 
-GESTURES: Final[dict[str, Callable[[Pose, Array, Array], Pose]]] = {
-    "write": _write,
-    "type": partial(_in_waves, waves="type"),
-    "piano": partial(_in_waves, waves="piano"),
-    "game": partial(_in_waves, waves="game"),
-    "drink": _to_the_mouth,
-    "drink_left": partial(_to_the_mouth, index=0),
-    "eat": _to_the_mouth,
-    "read": _read,
-    "music": _music,
-    "wave": partial(_in_waves, waves="wave"),
-    "tap": partial(_in_waves, waves="tap"),
-}
-"""What hands can be told to do, by name."""
+_OWN: Final[dict[str, Callable[[Pose, Array, Array], Pose]]] = {"write": _write, "read": _read, "music": _music}
+"""Gestures that are neither waves nor key poses alone."""
+
+
+def gesture_names() -> tuple[str, ...]:
+    """What hands and body can be told to do."""
+    return (*_OWN, *gesture_table().moves)

@@ -15,6 +15,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, concatenate, interpolate, smooth
+from motion_backend.procedural.touch.gestures import wave_of
 from motion_backend.procedural.touch.hand_captions import Laid, with_arms
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.hand_placement import gripped
@@ -49,6 +50,7 @@ class Way:
     """Seconds for what takes the whole body a second."""
     kneel_step: float
     """For each pose of `down`, of such seconds."""
+    doing: str = ""
     looks: float = 1.0
     """How much of the time for looking at the thing it needs."""
     turns: tuple[float, float] = (0.0, 0.0)
@@ -112,15 +114,16 @@ class Way:
         return left, rotations.cross(left, self.laid.normal)
 
 
-def deed(way: Way, doing: str, keys: TouchKeys) -> Pose:
+def deed(way: Way, keys: TouchKeys) -> Pose:
     """A touch from standing to standing, with what is done there (see `hand_captions.Handled`)."""
+    doing = way.doing
     rows = keys.of(doing)
     poses = {row.name: way.pose(row) for row in rows.pose}
     frames: dict[str, Pose] = {}
     last = way.away
     for stage in STAGES:
-        if stage == "do" and doing in _HELD:
-            frames[stage] = _HELD[doing](way, last, max(way.hold, rows.hold_min_s), keys.held)
+        if stage == "do" and (held := _HELD.get(doing, _busy if doing in keys.held.busy else None)):
+            frames[stage] = held(way, last, max(way.hold, rows.hold_min_s), keys.held)
         elif following := way.keys(rows, stage, poses):
             frames[stage] = way.through(last, following)
             last, _ = following[-1]
@@ -209,6 +212,27 @@ def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
         spine=held.spine + np.stack([still, row.spine_turn_rad * along, row.spine_side_rad * along], axis=1),
         head=held.head + np.stack([still, row.head_turn_rad * along, row.head_side_rad * along], axis=1),
     )
+
+
+def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
+    """The hand goes in the waves of what is done over the thing: it knocks, stirs, pours."""
+    row = keys.busy[way.doing]
+    time, ease, held = _held(there, seconds, keys.ease_s)
+    left, ahead = way.turned()
+    reach, palms, aside = held.reach.copy(), held.palms.copy(), np.zeros_like(time)
+    for move in row.moves:
+        wave = ease * wave_of(move.rate_hz, time, move.phase_share, move.burst)
+        wave = np.maximum(wave, 0.0) if move.taps else wave
+        aside += move.aside_m * wave
+        for index in way.hands:
+            side = (1.0, -1.0)[index]
+            reach[:, index] += wave[:, None] * (
+                move.aside_m * left + move.ahead_m * ahead + move.off_m * way.laid.normal
+            )
+            turn = rotations.axis_to_quat("x", -side * move.tilt_rad * wave)
+            palms[:, index] = rotations.compose(palms[:, index], turn)
+    spine = held.spine + np.stack([0 * aside, row.spine_turn_rad / keys.wash.usual_m * aside, 0 * aside], axis=1)
+    return replace(held, reach=reach, palms=palms, spine=spine)
 
 
 _HELD: Final[dict[str, Callable[[Way, Pose, float, HeldTouches], Pose]]] = {"": _rest, "wash": _wash, "rotate": _rotate}

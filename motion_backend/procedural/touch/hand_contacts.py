@@ -30,11 +30,14 @@ ELBOW: Final = 0.11
 STROKES: Final = (0.14, 0.11, 0.09, 0.07, 0.05, 0.03)
 """How far hands go to either side in wiping, the first that there is room for (metres)."""
 
+ON_TOPS: Final = frozenset({"pick", "put", "stir", "pour"})
+"""What is only done where things lie or stand."""
+
 
 def suits(spot: Spot, caption: str, solid: Obstacles) -> bool:
     """Whether a caption is done at such a spot: things lie on tops, a low front has no switch, two hands need width."""
     doing, front = handling_of(caption), not is_top(spot.normal)
-    if front and (doing in ("pick", "put") or (doing and spot.height == "low")):
+    if front and (doing in ON_TOPS or (doing and spot.height == "low")):
         return False
     if not (with_both_hands(caption) or steadies(caption)):
         return True

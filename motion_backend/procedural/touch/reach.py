@@ -102,10 +102,11 @@ def touch(
     looks = min(float(np.linalg.norm(lead.head - start.head)) / keys.reach.arriving.looks_rad, 1.0)
     if raised:
         kneeling = (_folded(lead, above, laid, row),)
-    times = manner.hold, tempo, pace, row.folding_s if raised else row.kneeling_step_s, max(looks, 1 / FPS)
+    step_s = row.folding_s if raised else row.kneeling_step_s
+    times = manner.hold, tempo, pace, step_s, manner.doing, max(looks, 1 / FPS)
     turns = turns_of_grip(reached, laid, skeleton, keys.held.rotate) if manner.doing == "rotate" else (0.0, 0.0)
     way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
-    whole = deed(way, manner.doing, keys)
+    whole = deed(way, keys)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
     return settle_from(start, replace(whole, knees=knees), FPS, seconds=row.settle_s)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+from motion_backend.procedural.touch.gestures import Burst
 from motion_backend.procedural.touch.reach_keys import ElbowPole, ReachTable
 from scene_graphs.data_tables import read_table, table
 
@@ -195,6 +196,34 @@ class Rotate:
 
 
 @table
+class HandMove:
+    """One wave that a hand is moved by over what it is at."""
+
+    rate_hz: float | None = None
+    """Without one it goes there and stays."""
+    aside_m: float = 0.0
+    """To the body's left along the surface."""
+    ahead_m: float = 0.0
+    off_m: float = 0.0
+    """Out from the surface."""
+    tilt_rad: float = 0.0
+    """About the way of the fingers, the thumb downwards."""
+    phase_share: float = 0.0
+    taps: bool = False
+    """Whether only its upper half is gone through."""
+    burst: Burst | None = None
+
+
+@table
+class Busy:
+    """What a hand does that comes and goes over a thing: waves, each added to the ones before."""
+
+    moves: tuple[HandMove, ...]
+    spine_turn_rad: float = 0.0
+    """Of the trunk, for every stroke aside by `Wash.usual_m`."""
+
+
+@table
 class HeldTouches:
     """touch_held.toml."""
 
@@ -203,6 +232,7 @@ class HeldTouches:
     rest: Rest
     wash: Wash
     rotate: Rotate
+    busy: dict[str, Busy]
 
 
 @dataclass(frozen=True)
@@ -218,18 +248,21 @@ class TouchKeys:
     rotate: TouchTable
     pick: TouchTable
     put: TouchTable
+    knock: TouchTable
+    stir: TouchTable
+    pour: TouchTable
 
     def of(self, doing: str) -> TouchTable:
         """The key poses of what is done (see `hand_captions.Handled`)."""
-        deeds = {"": self.rest, "press": self.press, "wash": self.wash, "rotate": self.rotate, "pick": self.pick}
-        return (deeds | {"put": self.put})[doing]
+        table: TouchTable = getattr(self, doing or "rest")
+        return table
 
 
 def touch_keys() -> TouchKeys:
     """The tables that are shipped."""
     deeds = {
         name: read_table("motion_backend", f"transitions/touch_{name}.toml", TouchTable)
-        for name in ("rest", "press", "wash", "rotate", "pick", "put")
+        for name in ("rest", "press", "wash", "rotate", "pick", "put", "knock", "stir", "pour")
     }
     return TouchKeys(
         read_table("motion_backend", "transitions/reach.toml", ReachTable),

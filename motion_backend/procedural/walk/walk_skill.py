@@ -128,6 +128,8 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
         return
     body.enter(PhaseKind.WALK)
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+    # Who goes somewhere to do something on the spot walks there as one walks.
+    style = walk_style(action.emotion, "walk") if style.stays and action.stands else style
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
@@ -235,13 +237,14 @@ def stay(body: Body, part: Part) -> None:
     action = part.action
     bearing = bearing_of(action.emotion, action.caption)
     restless = bearing.restless
-    if action.stands:
-        _stand_about(body, part.hold, bearing)
+    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+    does_it = style.stays > 0 and bool(style.doing)
+    if action.stands and not does_it:
+        _stand_about(body, part.hold, replace(bearing, waits=style.bearing.waits))
         return
-    if action.skill is not Skill.LOCO or action.goal is not None:
+    if not does_it and (action.skill is not Skill.LOCO or action.goal is not None):
         body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))
         return
-    style = walk_style(action.emotion, action.caption)
     bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
     held = replace(body.pose, **_carriage(bearing))

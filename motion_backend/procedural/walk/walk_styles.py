@@ -13,6 +13,7 @@ from motion_backend.procedural.style_sheet import (
     Metres,
     MetresPerSecond,
     Ratio,
+    Seconds,
     Share,
     StyleSheet,
     Turns,
@@ -89,7 +90,9 @@ class Walk:
     veer: Degrees
     """How far it looks to the left (right if negative) while its way curves there."""
     doing: str
-    """What the hands do meanwhile: a name in `gestures.GESTURES`."""
+    """What the hands do meanwhile: one of `gestures.gesture_names`."""
+    stays: Seconds
+    """How long it is done on the spot; 0 is a walk."""
     release: bool = False
     """Whether arms come down at the end of the way, where something else begins."""
     character: GaitCharacter = NOBODY

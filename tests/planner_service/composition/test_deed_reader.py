@@ -30,8 +30,8 @@ def likely(
     shown: float = 0.9, moods: dict[Emotion, float] | None = None, pieces: dict[str, float] | None = None, **some: float
 ) -> Likely:
     """What is likely: captions of which a part is a keyword of `some`, underscores for spaces."""
-    ours = {(Skill(skill), one) for skill, those in captions().items() for one in those}
-    every = dict.fromkeys(sorted(ours - captions_of_gestures()), 0.01)
+    ours = ((Skill(skill), one) for skill, those in captions().items() for one in those)
+    every = dict.fromkeys((one for one in ours if one not in captions_of_gestures()), 0.01)
     for part, share in some.items():
         every |= {known: share for known in every if part.replace("_", " ") in known[1].lower()}
     places = dict.fromkeys(furniture.catalogue().categories, 0.02) | (pieces or {})

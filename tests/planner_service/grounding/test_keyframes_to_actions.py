@@ -19,6 +19,7 @@ from planner_service.grounding.keyframes_to_actions import (
     can_stand,
     heading_after,
     height_of,
+    stays,
 )
 from planner_service.scripts.script import Keyframe
 from scene_graphs.affordances.affordances import spots
@@ -190,12 +191,17 @@ def test_the_same_seed_grounds_alike() -> None:
     assert grounded(*rows, seed=5) == grounded(*rows, seed=5)
 
 
-@pytest.mark.parametrize("caption", ["stand still", "wave with the right hand", "standing there, waving"])
-def test_who_stands_still_or_waves_goes_nowhere(caption: str) -> None:
-    _, stay = grounded(("touch", "touch", "shelf"), ("loco", caption, None))
+@pytest.mark.parametrize(
+    "caption", ["stand still", "wave with the right hand", "standing there, waving", "clapping hands", "squatting"]
+)
+def test_who_does_something_on_the_spot_goes_nowhere_and_takes_the_time_it_needs(caption: str) -> None:
+    _, stay, _ = grounded(("touch", "touch", "shelf"), ("loco", caption, None), ("loco", "walk", None))
     assert (stay.goal, stay.facing) == (None, None)
+    assert stay.hold == stays(caption) > 0
+    # Who is to do it at a piece of furniture walks there first.
     (towards,) = grounded(("loco", caption, "shelf"))
     assert towards.goal is not None
+    assert towards.stands >= stays(caption)
     (walk,) = grounded(("loco", "walk waving", None))
     assert walk.goal is not None
 

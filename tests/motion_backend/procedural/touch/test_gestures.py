@@ -14,17 +14,21 @@ from small_home import DIRECTOR, after, contact, small_home, to
 from motion_backend import rotations
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics import story_metrics
-from motion_backend.motion import Action, Character, Emotion, Motion, Skill
+from motion_backend.metrics.caption_predicates import judge_caption
+from motion_backend.metrics.joint_speed import MOST as FASTEST
+from motion_backend.metrics.joint_speed import fastest_joint
+from motion_backend.motion import Action, Character, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_pose import SURFACES
 from motion_backend.procedural.sit.sit_styles import sit_style
-from motion_backend.procedural.touch.gestures import GESTURES, gesture
+from motion_backend.procedural.touch.gestures import gesture, gesture_names
 from motion_backend.procedural.touch.hand_captions import handling_of, with_both_hands
 from motion_backend.procedural.touch.hand_rests import HOLDS
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.skeleton import INDEX, build_skeleton
+from planner_service.scripts.captions import captions
 
 HOME = small_home()
 OBSTACLES = Obstacles.of_home(HOME)
@@ -39,13 +43,27 @@ SITTING = {
     "listening to music, both hands at the ears": "music",
     "playing the piano, both hands on the keys": "piano",
     "sitting still": "",
+    "laughing while seated, hands on belly": "laugh",
+    "crying while seated, face in both hands": "cry",
+    "clapping while seated": "clap",
+    "talking while seated, with both hands": "talk",
+    "hugging to the chest while seated": "hug",
+    "knitting, both hands in the lap": "knit",
+    "playing with toys, both hands in front": "toys",
+    "playing the guitar": "guitar",
 }
+SPOT = [caption for caption in captions()[Skill.LOCO] if walk_style(Emotion.NEUTRAL, caption).doing]
+SPOT = [caption for caption in SPOT if walk_style(Emotion.NEUTRAL, caption).stays]
 TOUCHING = {
     "pick up with the right hand": "pick",
     "put down with the left hand": "put",
     "turn on with the right hand": "press",
     "wash with both hands": "wash",
     "rotate with the right hand": "rotate",
+    "knocking with the right hand": "knock",
+    "stirring with the right hand": "stir",
+    "pouring with the right hand": "pour",
+    "wiping with the right hand": "wash",
     "touch medium height": "",
     "An act of reaching high": "",
 }
@@ -87,7 +105,7 @@ def test_a_caption_of_sitting_is_shown_by_the_hands(caption: str) -> None:
     assert figures.reached
     assert figures.pen_max <= 0.05
     busy = max(moved(joints, LEFT, 60), moved(joints, RIGHT, 60))
-    still = style.doing in ("", "music")
+    still = style.doing in ("", "music", "cry", "hug")
     assert busy < 0.012 if still else 0.015 < busy < 0.45
     speed = np.linalg.norm(np.diff(joints[:, [LEFT, RIGHT]], axis=0), axis=-1) * 30
     assert speed.max() < 7.0
@@ -130,6 +148,36 @@ def test_a_body_without_a_goal_stays_where_it_is(caption: str, up: bool) -> None
     assert (joints[:, RIGHT, 1].max() > joints[0, INDEX["head"], 1] - 0.15) == up
     assert joints[:, LEFT, 1].max() < joints[0, INDEX["spine3"], 1]
     assert joints[-1, RIGHT, 1] < joints[0, INDEX["spine1"], 1]
+
+
+@for_each("caption", SPOT)
+def test_who_does_something_on_the_spot_is_seen_to_do_it_with_both_feet_where_they_stood(caption: str) -> None:
+    style = walk_style(Emotion.NEUTRAL, caption)
+    mood = list(Emotion)[len(caption) % len(Emotion)]
+    action = Action(Skill.LOCO, caption, mood, hold=style.stays, keyframe=1)
+    motion, joints = performed(action)
+    verdict = judge_caption(motion, action)
+    assert verdict is not None
+    assert verdict.missed == (), (mood, verdict.missed)
+    assert fastest_joint(motion.local_rotations, motion.fps)[1] < FASTEST
+    assert (motion.contacts[:, :2] == 1).all()
+    assert (motion.contacts[:, 2:].min() == 1) == ("kick" not in caption)
+    feet = joints[:, [INDEX["left_ankle"], INDEX["right_ankle"]]]
+    assert np.linalg.norm(feet[-1] - feet[0], axis=-1).max() < 0.01
+    # Arms hang again, and the trunk is as it was.
+    assert np.linalg.norm(joints[-1, [LEFT, RIGHT]] - joints[0, [LEFT, RIGHT]], axis=-1).max() < 0.12
+
+
+def test_who_goes_somewhere_to_do_it_there_walks_there_as_one_walks() -> None:
+    spot = contact(HOME, Skill.TOUCH, "table", "x").spot
+    assert spot is not None
+    action = Action(Skill.LOCO, "clapping hands", Emotion.NEUTRAL, goal=spot.standing, stands=3.0, keyframe=1)
+    motion, joints = performed(action)
+    apart = np.linalg.norm(joints[:, LEFT] - joints[:, RIGHT], axis=1)
+    walk = [phase for phase in motion.phases if phase.kind is PhaseKind.WALK]
+    assert apart[walk[0].start : walk[-1].stop].min() > 0.3
+    assert apart[walk[-1].stop :].min() < 0.2
+    assert np.linalg.norm(joints[-1, 0, [0, 2]] - spot.standing) < 0.1
 
 
 @pytest.mark.parametrize(
@@ -205,7 +253,7 @@ def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: flo
     assert motion.root_positions[-1, 2] == pytest.approx(z, abs=0.02)
 
 
-@for_each("doing", [*GESTURES, "", "juggle"])
+@for_each("doing", [*gesture_names(), "", "juggle"])
 def test_a_gesture_begins_and_ends_in_the_held_pose(doing: str) -> None:
     pose = standing((0.0, 0.0), 0.0, replace(Bearing(), arms=("desk", "desk")), build_skeleton(1.7)).repeat(80)
     made = gesture(pose, doing)

@@ -39,7 +39,7 @@ from motion_backend.skeleton import INDEX, JOINTS, build_skeleton
 from scene_graphs.navigation.path_planner import Walkable
 
 CAPTIONS: list[str] = json.loads(files("planner_service").joinpath("data/captions.json").read_text())["loco"]
-STAYING = ("stand still", "wave with the right hand")
+STAYING = [caption for caption in CAPTIONS if walk_style(Emotion.NEUTRAL, caption).stays]
 WALKS = [caption for caption in CAPTIONS if caption not in STAYING]
 SKATE_RATIO = 0.16
 """Of recorded walks, whose feet swing as low as these do; slip itself is held by the metrics of stories."""
