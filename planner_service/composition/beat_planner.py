@@ -16,9 +16,10 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed, unshown
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.gainsaid import is_gainsaid
-from planner_service.composition.keyframe_writer import BY_A_WALL, EXPRESSED, UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
+from planner_service.composition.rest_place import BY_A_WALL
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
