@@ -19,7 +19,6 @@ from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.caption_senses import only_in, shows
 from planner_service.composition.deed_lexicon import (
     Deed,
-    DeedRow,
     deed_table,
     listed_places,
     names_things,
@@ -32,7 +31,19 @@ from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
-from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
+from planner_service.composition.rest_place import (
+    GETS_THERE,
+    dozing,
+    goes_on,
+    is_beside,
+    is_there,
+    lies,
+    on_feet,
+    on_seat_ahead,
+    only_stands_for,
+    rises_later,
+    sits_up,
+)
 from planner_service.composition.stand_in import is_too_much
 from planner_service.composition.whereabouts import is_held, is_worn
 from planner_service.scripts.caption_fallbacks import usual
@@ -64,27 +75,13 @@ EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
 """Words before another place."""
 _MOST_PLACES: Final = 3
-_AHEAD: Final = 3
-"""Beats in which the seat that is named next is looked for."""
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
-BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
-"""Where nothing is kept that could be taken."""
 _GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
-_GETS_THERE: Final = re.compile(
-    r"\b(?:down|into|onto|back|under|climbs?|crawls?|falls?|flops?|goes|go|went|gets?|got|drops?|collapses?|curls?)\b"
-)
-"""Words that tell of lying down, not of lying there."""
 _LOW_DOWN: Final = re.compile(
     r"\b(?:under\w*|beneath|below|behind|floor\w*|ground|rug|carpet|tiles|low\w*|bottom|kne\w+|crawl\w*|crouch\w*|prone)\b"
 )
 """Words of what hands get down on the floor for."""
-_ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
-_TAKEN: Final = DeedRow(
-    ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
-)
-"""What is eaten or drunk on one's feet is taken from where it is."""
-_STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
 def _not_acted(read: ReadBeat) -> str:
@@ -157,16 +154,18 @@ class KeyframeWriter:
         beat = read.beat
         deed = self._deed(read.clause) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
-        nexts = (one.room or room_of(one.clause) for one in beats[index + 1 :])
-        self._ahead = next(filter(None, nexts), None)
+        nexts = beats[index + 1 :]
+        self._ahead = next(filter(None, (one.room or room_of(one.clause) for one in nexts)), None)
         if beat.kind in NOT_ACTED:
             self.why[index] = _not_acted(read)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None:
-            deed = self.deeds[index] = self._on_seat_ahead(deed, read, beats[index + 1 : index + 1 + _AHEAD])
+            if self.body.resting is None:
+                deed = on_seat_ahead(deed, read, nexts, self.reader, self.places)
+            self.deeds[index] = deed
             self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
-            self._try(index, read, deed, self._rises_later(index, beats))
+            self._try(index, read, deed, rises_later(nexts, self.reader))
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
         else:
@@ -222,30 +221,6 @@ class KeyframeWriter:
             if deed is not None and not deed.row.captions:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
 
-    def _on_seat_ahead(self, deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat]) -> Deed:
-        """Who sits for it does so where the theme has them sit next: nobody changes seats for what is told before."""
-        rests = deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)
-        if not rests or deed.named or self.body.resting is not None:
-            return deed
-        told = [(one, self.reader.deed(one.clause)) for one in nexts if one.room in (None, read.room)]
-        for one, then in told:
-            if then is None or not then.named or then.skill is not Skill.SITDOWN or not self.places.has(then.pieces[0]):
-                continue
-            if one is nexts[0] and is_beside(one):  # "collapses | giggling on the rug"
-                return then
-            if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit") and then.pieces[0] != "floor":
-                return replace(deed, pieces=then.pieces, named=True)
-        return deed
-
-    def _rises_later(self, index: int, beats: Sequence[ReadBeat]) -> bool:
-        """Whether somebody gets or sits up next, or is told to lie there: who wakes before that stays in bed."""
-        deeds = ((one, self.reader.deed(one.clause)) for one in beats[index + 1 :] if one.beat.kind == "deed")
-        later, deed = next(((one, deed) for one, deed in deeds if deed is not None), (None, None))
-        if later is None or deed is None:
-            return False
-        stays = deed.skill is Skill.LIEDOWN and not (_GETS_THERE.search(later.text) or "asleep" in later.text)
-        return deed.skill in RISINGS or sits_up(later, deed) or (stays and later is beats[index + 1])
-
     def _try(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool) -> None:
         """Do it, or leave it out where what would be done only stands for it and is too much for that."""
         before, parts = self.body.copy(), len(self.parts)
@@ -258,7 +233,7 @@ class KeyframeWriter:
 
     def _do(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool = False) -> None:
         self._rises = rises_later
-        deed = self._on_feet(read, deed)
+        deed = on_feet(read, deed, self.body.resting, self._clause, self._avoided)
         mood = read.beat.emotion
         self._clause = read.clause
         if deed.row.mood and mood is Emotion.NEUTRAL:
@@ -276,7 +251,7 @@ class KeyframeWriter:
                     self._rise(index, deed, mood)
             case Skill.STANDUP | Skill.GETUP:
                 self._rise(index, deed, mood)
-            case Skill.LOCO if self._goes_on(read, deed):
+            case Skill.LOCO if resting is not None and goes_on(read, deed):
                 self.body.show(index)
             case Skill.LOCO if deed.row.seated and resting is not None and resting.skill is Skill.SITDOWN:
                 self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
@@ -311,28 +286,6 @@ class KeyframeWriter:
         self.deeds.pop(index, None)
         return True
 
-    def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
-        """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
-        at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
-        at = () if BY_A_WALL.search(read.text) else at
-        stands, last = bool(_ON_FEET.search(read.text)), self._clause
-        goes_on = self.body.resting is None and last is not None and last.sentence == read.clause.sentence
-        if deed.row.rests and stands and at:
-            return Deed(_TAKEN, Skill.TOUCH, at, True)
-        if deed.row.rests and (stands or deed.skill in self._avoided):
-            return Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
-        if deed.row.standing and goes_on and not (deed.named or read.clause.verb == "sit"):
-            return Deed(_STANDING, Skill.LOCO, (), False)
-        return deed
-
-    def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
-        """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
-        would only stand for it."""
-        shown = deed.is_gesture or any(shows(Skill.LOCO, one, read.clause) for one in deed.row.captions)
-        stands_in = bool(deed.row.captions) and not shown
-        rests = self.body.resting is not None and not deed.named and not deed.row.seated
-        return rests and (stands_in or (is_beside(read) and deed.row.captions == _STANDING.captions))
-
     def _rest(
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
     ) -> None:
@@ -358,7 +311,7 @@ class KeyframeWriter:
                 return
         if resting is not None and here:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
-        begins = not self.keyframes and skill is Skill.LIEDOWN and not _GETS_THERE.search(read.text)
+        begins = not self.keyframes and skill is Skill.LIEDOWN and not GETS_THERE.search(read.text)
         if self._add(index, read, deed, mood, skill, shown):
             if begins and self._rises:  # who "cannot sleep. He gets up" lies there when the story begins
                 self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
