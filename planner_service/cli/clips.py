@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from motion_backend.motion import Skill
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import JsonOption, plain_table
 from planner_service.output.story_export import OutputError, check_writable, write_files
 from planner_service.pipeline import RequestError
 from planner_service.user_errors import printable
@@ -224,7 +224,7 @@ def match(
 @app.command("list")
 def list_clips(
     file: Annotated[Path, typer.Argument(help="A collection that `sims clips build` wrote.")],
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Say what is in a collection."""
     from motion_backend.mocap.dataset_file import read_dataset

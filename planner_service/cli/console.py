@@ -1,12 +1,15 @@
-"""Tables as commands print them: no lines, bold headings, figures on the right; and a database that refuses."""
+"""What commands share: options, tables (no lines, bold headings, figures on the right), a bar, a database that
+refuses."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from typing import Annotated
 
 import typer
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 from rich.table import Table
 
 from planner_service.settings import SettingsError
@@ -15,6 +18,30 @@ ModelOption = Annotated[
     str | None,
     typer.Option("--model", help='The language model (SIMS_LLM_MODEL), such as "ollama:qwen3"; "rules" for none.'),
 ]
+
+JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")]
+LayoutOption = Annotated[
+    list[str] | None,
+    typer.Option("--layout", help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
+]
+BackendOption = Annotated[str | None, typer.Option("--backend", help="What moves the body (SIMS_BACKEND; procedural).")]
+HeightOption = Annotated[
+    float, typer.Option("--height", help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
+]
+FilmOption = Annotated[
+    bool, typer.Option("--film", help="Write film.mp4 too; a minute of it takes about twenty seconds.")
+]
+UsdOption = Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")]
+
+
+@contextmanager
+def progress(what: str) -> Iterator[Callable[[int, int], None]]:
+    """A bar beside what is printed, on a terminal alone; it is told how many are done, of how many."""
+    console = Console(stderr=True)
+    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+        task = bar.add_task(what, total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 @contextmanager

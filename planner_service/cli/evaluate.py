@@ -17,7 +17,7 @@ from rich.progress import Progress
 from rich.table import Table
 
 from motion_backend.backends import DEFAULT_BACKEND, check_backend
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import JsonOption, plain_table, progress
 from planner_service.cli.evaluate_body import body
 from planner_service.cli.evaluate_embedding import embedding
 from planner_service.cli.evaluate_motion import motion
@@ -60,7 +60,7 @@ def scripts(
         str, typer.Option(help="Who moves the body: procedural, or physics as in the paper.")
     ] = DEFAULT_BACKEND,
     results: Annotated[Path | None, typer.Option(help="A file of JSON lines: what it has is not acted again.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Act scripts of 2 (simple), 3-4 (mid) and 4-6 (hard) interactions in library rooms, beside the paper's figures.
 
@@ -71,9 +71,8 @@ def scripts(
     from planner_service.evaluation.script_evaluation import plan_script_trials, run_script_trials, sum_up_scripts
 
     trials = plan_script_trials(rooms, seeds)
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("acting", total=len(trials))
-        acted = run_script_trials(trials, lambda done, _all: bar.update(task, completed=done), backend, results)
+    with progress("acting") as seen:
+        acted = run_script_trials(trials, seen, backend, results)
     figures, faults = sum_up_scripts(acted), [one for one in acted if one.fault]
     label = MOVED_BY.get(backend, backend)
     cells = len({(trial.room, trial.seed) for trial in trials})
@@ -140,7 +139,7 @@ def evaluate() -> None:
 
 @app.command()
 def planning(
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
+    as_json: JsonOption = False,
     held_out: Annotated[
         bool, typer.Option("--show-held-out", help="List what is missed of the held-out half too; never tune on it.")
     ] = False,
@@ -208,7 +207,7 @@ def methods(
         "out/pairs"
     ),
     between: Annotated[str, typer.Option(help="The two methods that are filmed, as the table names them.")] = "",
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of a table.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Plan the labelled themes by every method side by side, by rules and, where one is set, by a language model.
 

@@ -10,11 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.console import Console
-from rich.progress import Progress
 from rich.table import Table
 
 from motion_backend.motion import Skill
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import JsonOption, plain_table, progress
 from planner_service.cli.evaluate_stories import bounds, print_stories, read_stories, shown, stories_to_dict
 from planner_service.pipeline import RequestError
 from planner_service.scripts.captions import captions as known_captions
@@ -25,22 +24,16 @@ if TYPE_CHECKING:
     from planner_service.evaluation.story_evaluation import StoryTrial
     from planner_service.evaluation.trials import Performance
 
-FIGURES = (
-    "caption_kept",
-    "reached", "reached_any", "reached_strict", "contact_error", "contact_mean", "execution_time", "skate_ratio",
-    "skate", "slip", "pen_mean", "pen_share", "pen_max", "skin_pen_share", "skin_pen_max", "floor_pen", "floating",
-    "self_pen_share", "self_pen_max", "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising",
-    "jerk", "jerk_peak", "jerk_against_real", "seam_jump", "seam_speed_jump", "bone_deviation",
-)  # fmt: skip
 UNITS = {
-    "caption_kept": "%",
-    "reached": "%", "reached_any": "%", "reached_strict": "%", "skate_ratio": "%", "pen_share": "%",
-    "self_pen_share": "%", "limits_share": "%", "contact_error": "cm", "pen_mean": "cm", "pen_max": "cm",
-    "floor_pen": "cm", "floating": "cm", "self_pen_max": "cm", "seam_jump": "cm", "bone_deviation": "cm",
-    "execution_time": "s", "skate": "cm/s", "jerk": "m/s³", "jerk_peak": "m/s³", "seam_speed_jump": "m/s",
-    "jerk_against_real": "×", "contact_mean": "cm", "slip": "cm/s", "joint_speed": "rad/s", "frozen_share": "%",
-    "zmp_upright": "cm", "zmp_rising": "cm", "skin_pen_share": "%", "skin_pen_max": "cm",
+    "caption_kept": "%", "reached": "%", "reached_any": "%", "reached_strict": "%", "contact_error": "cm",
+    "contact_mean": "cm", "execution_time": "s", "skate_ratio": "%", "skate": "cm/s", "slip": "cm/s",
+    "pen_mean": "cm", "pen_share": "%", "pen_max": "cm", "skin_pen_share": "%", "skin_pen_max": "cm",
+    "floor_pen": "cm", "floating": "cm", "self_pen_share": "%", "self_pen_max": "cm", "limits_share": "%",
+    "joint_speed": "rad/s", "frozen_share": "%", "zmp_upright": "cm", "zmp_rising": "cm", "jerk": "m/s³",
+    "jerk_peak": "m/s³", "jerk_against_real": "×", "seam_jump": "cm", "seam_speed_jump": "m/s",
+    "bone_deviation": "cm",
 }  # fmt: skip
+"""Of the figures that are shown, in this order."""
 WORST = (
     "contact_error", "contact_mean", "pen_max", "pen_share", "skin_pen_max", "skate_ratio", "self_pen_max",
     "limits_share", "joint_speed", "frozen_share", "zmp_upright", "zmp_rising", "seam_speed_jump",
@@ -69,7 +62,7 @@ def body(
         str | None, typer.Option(help="Whole stories: how many on themes of ours, or a file with a theme a line.")
     ] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes at once.")] = 2,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
+    as_json: JsonOption = False,
     out: Annotated[Path | None, typer.Option(help="Folder for all figures, or for one trial's film.")] = None,
 ) -> None:
     """Act captions in library rooms, from a random place 1 to 5 m away, and print every figure beside its limit.
@@ -134,10 +127,9 @@ def _over_trials(chosen: Mapping[Skill, list[str]], rooms: int, seeds: int, work
     from planner_service.evaluation.diversity import diversity
 
     trials = plan_trials(chosen, rooms, seeds)
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("acting", total=len(trials))
-        results = run_trials(trials, workers, lambda done, _all: bar.update(task, completed=done))
-    figures = sum_up(results, FIGURES)
+    with progress("acting") as seen:
+        results = run_trials(trials, workers, seen)
+    figures = sum_up(results, tuple(UNITS))
     told = tell_apart([(one.trial, one.features) for one in results if one.features is not None])
     apd = {
         of.value: diversity([one.contact for one in results if one.trial.skill is of and one.contact is not None])
@@ -164,9 +156,8 @@ def _over_stories(trials: Sequence[StoryTrial], workers: int) -> _Evaluated:
     """Stories told and acted, figure by figure over all of them."""
     from planner_service.evaluation.story_evaluation import run_stories, sum_up_stories
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("telling", total=len(trials))
-        results = run_stories(trials, workers, lambda done, _all: bar.update(task, completed=done))
+    with progress("telling") as seen:
+        results = run_stories(trials, workers, seen)
     figures = sum_up_stories(results)
     value = stories_to_dict(results, figures)
     rows = [{"theme": one.trial.theme, "seed": one.trial.seed, **one.report} for one in results if one.report]
@@ -344,7 +335,7 @@ def _by_caption(results: Sequence[Result]) -> list[dict[str, Any]]:
             one.figures for one in results if (one.trial.skill, one.trial.caption) == (skill, caption) and one.figures
         ]
         row: dict[str, Any] = {"skill": skill.value, "caption": caption, "trials": len(own)}
-        for name in FIGURES:
+        for name in UNITS:
             values = [float(one[name]) for one in own if one[name] is not None]
             found = (max(values) if name in WORST_OF_TRIALS else sum(values) / len(values)) if values else None
             row[name] = None if found is None else round(found, 5)

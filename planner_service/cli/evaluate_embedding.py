@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from planner_service.cli.console import JsonOption
 from planner_service.cli.train_embedding import recorded_clips, show
 
 
@@ -19,7 +20,7 @@ def embedding(
     ] = None,
     weights: Annotated[Path | None, typer.Option(help="Of `sims train embedding`; left out: those shipped.")] = None,
     workers: Annotated[int, typer.Option(min=1, max=64, help="Processes that act at once.")] = 1,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Act every caption in rooms that were not learned from; count the clips whose own caption is first among all.
 

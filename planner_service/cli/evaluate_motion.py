@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import JsonOption, plain_table
 from planner_service.pipeline import RequestError
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def motion(
     ] = None,
     sheets: Annotated[Path | None, typer.Option(help="Draw the same actions by all backends into this folder.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="Of what is drawn, and of stories.")] = 0,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Ablate the learned body, and hold it and draw it beside the others.
 

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from motion_backend.motion import Skill
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import JsonOption, plain_table
 from planner_service.cli.evaluate_stories import read_stories
 from planner_service.settings import give_backends, read_settings
 
@@ -43,7 +43,7 @@ def physics(
         Path | None, typer.Option(help="A file of JSON lines: what it has is not simulated again.")
     ] = None,
     out: Annotated[Path | None, typer.Option(help="Write a contact sheet of every trial into this folder.")] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Follow plans by a body under gravity (MuJoCo, model-predictive control, no root force) and measure it.
 

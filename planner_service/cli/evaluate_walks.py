@@ -11,7 +11,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from planner_service.cli.console import plain_table
+from planner_service.cli.console import JsonOption, plain_table
 
 if TYPE_CHECKING:
     from motion_backend.metrics.kernel_mmd import Distance
@@ -43,7 +43,7 @@ def walks(
     places: Annotated[
         int, typer.Option(min=1, max=100, help="With --backend: places that are walked to in each room.")
     ] = 4,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")] = False,
+    as_json: JsonOption = False,
 ) -> None:
     """Compare our walks with recorded ones: the baseline that a learned motion is to beat.
 

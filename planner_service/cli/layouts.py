@@ -14,8 +14,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final
@@ -23,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import typer
 from rich.console import Console
 
-from planner_service.cli.console import plain_table, writing_database
+from planner_service.cli.console import plain_table, progress, writing_database
 from planner_service.library.library import Shelves, open_shelves
 from planner_service.output.room_pictures import Shown, picture
 from planner_service.output.story_export import Writer, check_writable, write_files
@@ -306,7 +305,7 @@ def import_layouts(
     source = Source.of_path(path, MAX_FILE_BYTES if format_name == "native" else MAX_BYTES)
     console = Console(markup=False, highlight=False)
     shelves = None if dry_run else open_shelves(read_settings(), writes=True)
-    with writing_database(), _progress("looking over", console) as seen:
+    with writing_database(), progress("looking over") as seen:
         taken = take_in(shelves, source, format_name, options, seen)
     layouts = taken.imported.layouts
     for layout in layouts:
@@ -320,17 +319,6 @@ def import_layouts(
         console.print(f"nothing was added; without --dry-run these {len(layouts)} rooms would be")
     else:
         console.print(f"added {len(layouts)}; the library has {len(shelves.rooms())} rooms")
-
-
-@contextmanager
-def _progress(what: str, console: Console) -> Iterator[Callable[[int, int], None]]:
-    """A bar on a terminal, nothing in a file."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
-    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task(what, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
 
 
 @app.command()

@@ -14,6 +14,7 @@ from rich.console import Console
 
 from motion_backend.motion import Character, Emotion, Skill, moment
 from planner_service.cli.cast_command import CharacterOption, character_given
+from planner_service.cli.console import BackendOption, FilmOption, HeightOption, LayoutOption, UsdOption
 from planner_service.cli.story import Extra, check_output, produce
 from planner_service.library.library import open_shelves
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
@@ -44,19 +45,12 @@ def play(
     script: Annotated[Path, typer.Argument(help="Keyframes as JSON: a list, a script that has some, or a story.json.")],
     out: Annotated[Path | None, typer.Option(help="Folder for the files; left out: a new one in out/.")] = None,
     seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same motion.")] = 0,
-    layout: Annotated[
-        list[str] | None,
-        typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
-    ] = None,
-    backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
-    height: Annotated[
-        float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
-    ] = 1.70,
+    layout: LayoutOption = None,
+    backend: BackendOption = None,
+    height: HeightOption = 1.70,
     character: CharacterOption = "",
-    film: Annotated[
-        bool, typer.Option("--film", help="Write film.mp4 too; a minute of it takes about twenty seconds.")
-    ] = False,
-    usd: Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")] = False,
+    film: FilmOption = False,
+    usd: UsdOption = False,
 ) -> None:
     """Act out a script of your own: nothing is planned, a home is found for it unless one is given."""
     from planner_service.cli.layouts import chosen_layouts
@@ -130,7 +124,8 @@ def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:
     furniture = Keyframe.model_construct(skill=Skill.LOCO, caption="", furniture=_furniture_of(row))
     if not furniture.on_floor and not is_known(furniture.piece[0]):
         words = sorted(map(display_name, catalogue().class_of))
-        near = _nearest(furniture.piece[0], words) or '; "floor" needs none'
+        spelt_alike = get_close_matches(furniture.piece[0], list(dict.fromkeys(words)), n=SUGGESTED, cutoff=0.4)
+        near = _perhaps(spelt_alike) or '; "floor" needs none'
         faults.append(f"{where}, furniture: {furniture.furniture!r:.80} is not known{near}")
         return None
     return keyframe
@@ -168,11 +163,6 @@ def _meant(keyframe: Keyframe, caption: str, rows: Sequence[str], words: Vocabul
     misspelt = get_close_matches(caption, list(dict.fromkeys(rows)), n=1, cutoff=MISSPELT)
     moody = [] if keyframe.mood is Emotion.NEUTRAL else [usual(keyframe.skill, keyframe.mood, caption)]
     return [one for one in dict.fromkeys([*misspelt, *words.near(keyframe.skill, caption), *moody]) if one in rows]
-
-
-def _nearest(word: str, known: Sequence[str]) -> str:
-    """Known words that are spelt much like another."""
-    return _perhaps(get_close_matches(word, list(dict.fromkeys(known)), n=SUGGESTED, cutoff=0.4))
 
 
 def _perhaps(found: Sequence[str]) -> str:

@@ -17,7 +17,15 @@ from motion_backend.backends import about
 from motion_backend.motion import Character
 from planner_service.cast_choice import told_look
 from planner_service.cli.cast_command import CharacterOption, character_given
-from planner_service.cli.console import ModelOption, plain_table
+from planner_service.cli.console import (
+    BackendOption,
+    FilmOption,
+    HeightOption,
+    LayoutOption,
+    ModelOption,
+    UsdOption,
+    plain_table,
+)
 from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
 from planner_service.llm.ollama_server import ollama_models
@@ -67,11 +75,8 @@ def story(
         str | None,
         typer.Option(help="Room types to play in, separated by commas: bedroom, living_room, dining_room, study."),
     ] = None,
-    layout: Annotated[
-        list[str] | None,
-        typer.Option(help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
-    ] = None,
-    backend: Annotated[str | None, typer.Option(help="What moves the body (SIMS_BACKEND; procedural).")] = None,
+    layout: LayoutOption = None,
+    backend: BackendOption = None,
     clips: Annotated[
         Path | None, typer.Option(help="Collection whose walks the backend matching is made of (SIMS_CLIPS).")
     ] = None,
@@ -79,14 +84,10 @@ def story(
         str, typer.Option(help="The character's name; left out: as the theme calls them, else Sam.")
     ] = "Sam",
     pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
-    height: Annotated[
-        float, typer.Option(help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
-    ] = 1.70,
+    height: HeightOption = 1.70,
     character: CharacterOption = "",
-    film: Annotated[
-        bool, typer.Option("--film", help="Write film.mp4 too; a minute of it takes about twenty seconds.")
-    ] = False,
-    usd: Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")] = False,
+    film: FilmOption = False,
+    usd: UsdOption = False,
     model: ModelOption = None,
 ) -> None:
     """Turn a story theme into a script, a home, a told story and an animated film."""
@@ -135,7 +136,8 @@ def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, extra: 
     """Make a story, write its files and say how it went, with a bar while it takes."""
     from planner_service.output.story_export import write_story
 
-    with _bar(console) as bar:
+    columns = (TextColumn("{task.description:<42}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console) as bar:
         task = bar.add_task(TOLD["plan"], total=1.0)
 
         def show(stage: str, share: float) -> None:
@@ -192,10 +194,6 @@ def read_rooms(argument: str) -> tuple[str, ...]:
     if not rooms:
         raise RequestError(f"there is no room in {argument!r}", f"choose among {', '.join(ROOM_TYPES)}", at="rooms")
     return rooms
-
-
-def _bar(console: Console) -> Progress:
-    return Progress(TextColumn("{task.description:<42}"), BarColumn(), TimeElapsedColumn(), console=console)
 
 
 def _close(console: Console, made: Story, files: list[Path]) -> None:

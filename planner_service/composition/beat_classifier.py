@@ -20,6 +20,7 @@ import numpy as np
 
 from motion_backend.language.minilm import Floats, MiniLM, WeightsError
 from motion_backend.motion import Emotion, Skill
+from planner_service.composition.deed_lexicon import captions_of_gestures
 from planner_service.scripts.captions import captions
 
 SHIPPED: Final = "beat_classifier.safetensors"
@@ -43,11 +44,11 @@ class Vocabulary:
 
     @staticmethod
     def read(text: str) -> Vocabulary:
-        """From JSON; WeightsError where a learned caption is no longer ours. Newer ones are known by the table alone."""
+        """From JSON; WeightsError where our captions, those of gestures aside, are not those that were learned."""
         known = json.loads(text)
         learned = tuple((Skill(skill), caption) for skill, caption in known["captions"])
         ours = {(Skill(skill), one) for skill, some in captions().items() for one in some}
-        if not ours >= set(learned):
+        if set(learned) != ours - captions_of_gestures():
             raise WeightsError(
                 "the captions are not those that the beat classifier has learned", "train it again: sims train beats"
             )
@@ -77,7 +78,7 @@ class Likely:
         return max(self.captions, key=lambda one: self.captions[one])
 
     def has_learned(self, skill: Skill, caption: str) -> bool:
-        """Whether it was among the captions that were learned: of newer ones nothing is known."""
+        """Whether it was among the captions that were learned: those of gestures are known by the table alone."""
         return (skill, caption) in self.captions
 
     def of(self, skill: Skill, some: Collection[str]) -> float:

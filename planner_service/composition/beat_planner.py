@@ -16,9 +16,10 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed, unshown
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.gainsaid import is_gainsaid
-from planner_service.composition.keyframe_writer import BY_A_WALL, EXPRESSED, UNSHOWN, KeyframeWriter, Part
+from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
+from planner_service.composition.rest_place import BY_A_WALL
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
@@ -44,7 +45,7 @@ def serve_beats(
 ) -> LongScript:
     """The long script of a theme, beat by beat. ThemeError when nothing of it can be acted."""
     planned = _by_model(theme, library, request, model, record)
-    read = _read_anew(planned) if planned else beats_of(theme)
+    read = tuple(read_beat(one.beat) for one in planned.beats) if planned else beats_of(theme)
     reader = _reader(read, library, request)
     read = read if planned else tuple(map(reader.heard, read))
     parts = {} if request.method == "direct" else PartFinder(library, reader, request.rooms).all_of(read)
@@ -126,11 +127,6 @@ def _named_part(served: PlannedBeat, library: ScriptLibrary) -> Part | None:
     if script is None:
         return None
     return Part(script, float(rank([served.beat.text], library)[0][library.scripts.index(script)]), ())
-
-
-def _read_anew(planned: PlannedTheme) -> tuple[ReadBeat, ...]:
-    """The model's beats with what of their words the rules go by."""
-    return tuple(read_beat(one.beat) for one in planned.beats)
 
 
 def _with_reasons(

@@ -22,6 +22,7 @@ from torch.optim.swa_utils import AveragedModel
 from motion_backend.language.minilm import HEADS, LAYERS, WIDTH, WordPiece
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.beat_classifier import PAIR, SCALE, TOKENS, Vocabulary, plain
+from planner_service.composition.deed_lexicon import captions_of_gestures
 from planner_service.composition.deed_reader import BEFORE
 from planner_service.evaluation.beat_judgement import same_words
 from planner_service.evaluation.labels import Alternative, LabelledBeat, LabelledTheme
@@ -79,7 +80,8 @@ class Row(NamedTuple):
 
 def vocabulary() -> Vocabulary:
     """What there is to be told apart."""
-    known = tuple((Skill(skill), one) for skill, some in captions().items() for one in some)
+    every = ((Skill(skill), one) for skill, some in captions().items() for one in some)
+    known = tuple(one for one in every if one not in captions_of_gestures())
     return Vocabulary(known, tuple(Emotion), ("floor", *sorted(furniture.catalogue().categories)))
 
 

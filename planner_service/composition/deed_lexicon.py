@@ -45,6 +45,8 @@ _GROUND: Final = re.compile(r"\b(?:floor|floorboards?|(?:hearth)?rugs?|carpets?|
 _UNDER_IT: Final = re.compile(r"\b(?:under|beneath|underneath|below) (?:the|an?|his|her|their|my|every|each)\b")
 _GOAL: Final = re.compile(r"\b(?:over|on|onto|into|in|inside|under|against|behind|beneath|beside) ((?:\w+ ?){1,4})")
 """Where something is put."""
+_BROUGHT_TO: Final = re.compile(r"\b(?:to|into|onto|towards?) ((?:\w+ ?){1,4})")
+"""Where a way leads: "drags the chair | to the desk"."""
 _LOW: Final = ("touch low height with the right hand", "touch low height")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
@@ -99,6 +101,12 @@ class DeedRow:
     """Whether its captions only stand for it."""
     why: str = ""
     """Why a body at home does not do it."""
+    unless: tuple[str, ...] = ()
+    """Of a gesture: where the words mean something else."""
+    small: bool = False
+    """Of a gesture: whether nobody gets up for it."""
+    walks: bool = False
+    """Of a gesture: whether it is a way of walking, and not done on the spot."""
 
 
 @table
@@ -112,10 +120,12 @@ class DeedTable:
     stands_on: dict[str, str]
     seats_at: dict[str, tuple[str, ...]]
     deed: tuple[DeedRow, ...]
+    gesture: tuple[DeedRow, ...]
+    """What is seen in limbs, trunk or head, whatever else a clause tells."""
 
     def __post_init__(self) -> None:
         known = captions()
-        for row in self.deed:
+        for row in (*self.deed, *self.gesture):
             for skill, some in ((row.skill, row.captions), (Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
                 require_known(f"deed {row.says[0]!r}", some, known.get(skill.value, ()))
             if row.mood:
@@ -127,12 +137,21 @@ class DeedTable:
     @cached_property
     def ways(self) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
         """Every way to say a deed by each word that may begin it, "" for a gap, in the order of the rows."""
-        found: dict[str, list[tuple[Pattern, DeedRow]]] = {}
-        for row in self.deed:
-            for pattern in map(_pattern, row.says):
-                for first in pattern[0] or ("",):
-                    found.setdefault(first, []).append((pattern, row))
-        return found
+        return _by_first_word(self.deed)
+
+    @cached_property
+    def gestures(self) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
+        """The same of gestures."""
+        return _by_first_word(self.gesture)
+
+
+def _by_first_word(rows: Iterable[DeedRow]) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
+    found: dict[str, list[tuple[Pattern, DeedRow]]] = {}
+    for row in rows:
+        for pattern in map(_pattern, row.says):
+            for first in pattern[0] or ("",):
+                found.setdefault(first, []).append((pattern, row))
+    return found
 
 
 @cache
@@ -140,6 +159,19 @@ def deed_table() -> DeedTable:
     """The deeds we know."""
     known: DeedTable = read_table("planner_service", "deeds.toml", DeedTable)
     return known
+
+
+@cache
+def captions_of_gestures() -> frozenset[tuple[Skill, str]]:
+    """The captions that gestures have and no other deed: labels of beats that were learned from do not know them."""
+    table = deed_table()
+    return _captions(table.gesture) - _captions(table.deed)
+
+
+def _captions(rows: Iterable[DeedRow]) -> frozenset[tuple[Skill, str]]:
+    own = ((row.skill, row.captions) for row in rows)
+    rest = ((skill, some) for row in rows for skill, some in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)))
+    return frozenset((skill, one) for skill, some in (*own, *rest) for one in some)
 
 
 @dataclass(frozen=True)
@@ -152,6 +184,11 @@ class Deed:
     """Furniture where it may be done, the likeliest first; empty: wherever one is."""
     named: bool
     """Whether the beat itself names the furniture."""
+
+    @property
+    def is_gesture(self) -> bool:
+        """Whether it is seen in limbs, trunk or head: what has been learned of beats has no opinion of that."""
+        return any(self.row.says is row.says for row in deed_table().gesture)
 
 
 def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed | None:
@@ -176,9 +213,13 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     )
     if skill is Skill.LIEDOWN and seated and not (_FLOOR.search(clause.text) or _UNDER.search(clause.text)):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
+    on = [*pieces_in(clause.text), *(["floor"] if _FLOOR.search(clause.text) else [])]
+    if need is None and (rested := _at_rest(found, on)):
+        return rested
     if need is None:
-        pieces = [piece for piece in named if furniture.affordances(piece)]
-        return Deed(found, skill, tuple(pieces), bool(pieces))
+        goals = [piece for place in _BROUGHT_TO.findall(clause.text) for piece in pieces_in(place)]
+        pieces = [piece for piece in goals or named if furniture.affordances(piece)]
+        return Deed(found, skill, tuple(pieces or found.at), bool(pieces))
     if skill is Skill.TOUCH:
         return _touched(clause, about, found, named)
     fitting = [piece for piece in named if affords(piece, need)]
@@ -189,6 +230,15 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     if under or _FLOOR.search(clause.text):
         fitting = ["floor"]
     return Deed(found, skill, tuple(fitting or dict.fromkeys(found.at)), bool(fitting))
+
+
+def _at_rest(row: DeedRow, named: Sequence[str]) -> Deed | None:
+    """What is done sitting or lying on what is named, of what is else done on one's feet: "weeps on the bed"."""
+    for skill, some in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
+        fitting = tuple(piece for piece in named if affords(piece, NEEDS[skill]))
+        if row.skill is Skill.LOCO and some and fitting:
+            return Deed(replace(row, skill=skill, captions=some, rests=True), skill, fitting, True)
+    return None
 
 
 def _touched(clause: Clause, about: str, row: DeedRow, named: list[str]) -> Deed | None:
@@ -245,7 +295,7 @@ def typical_of(text: str) -> list[str]:
 def _may_be_noun(lemma: str) -> bool:
     """Whether a word is a noun, and no mark or numeral that a dictionary has as one."""
     known = grammar()
-    return is_noun(lemma) and lemma not in known.marks | known.numbers | known.prepositions | {"one"}
+    return is_noun(lemma) and lemma not in known.marks | known.numbers | known.prepositions | _PUT | {"one"}
 
 
 def object_of(clause: Clause) -> str:
@@ -344,20 +394,31 @@ def said_row(clause: Clause) -> DeedRow | None:
     return found[1] if found else None
 
 
-def _said(clause: Clause) -> tuple[int, DeedRow] | None:
+def _said(clause: Clause, gestures: bool = True) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
-    ways = deed_table().ways
+    table = deed_table()
     does = bool(clause.verb) or clause.text.split(" ", 1)[0].endswith("ing")  # "pacing", but not "wrapped in a blanket"
+    limbs = lemma_of(head_of(clause.subject)) in theme_words()["body"]  # "one leg stretched before him"
     for lemmas in readings(clause):
+        first = "".join(lemmas[:1])
+        for pattern, row in table.gestures.get(first, ()) if gestures and does and not limbs else ():
+            if _fits(pattern, lemmas) and not says(row.unless, lemmas):
+                return len(lemmas), row
         fitting = [
             (_words_in(pattern), row)
-            for first in ("".join(lemmas[:1]) if does else "", "")
-            for pattern, row in ways.get(first, ())
+            for word in (first if does else "", "")
+            for pattern, row in table.ways.get(word, ())
             if _fits(pattern, lemmas)
         ]
         if fitting:
             return max(fitting, key=lambda one: one[0])
     return None
+
+
+def without_gestures(clause: Clause) -> DeedRow | None:
+    """The row of a clause's words where no gesture is looked for."""
+    found = _said(clause, gestures=False)
+    return found[1] if found else None
 
 
 def _words_in(pattern: Pattern) -> int:
@@ -511,5 +572,5 @@ def _names(words: Sequence[str], size: int) -> bool:
 
 def room_of(clause: Clause) -> str | None:
     """The room type that the words of a clause make one think of: "cooks" is the kitchen's."""
-    words = {*clause.lemmas, *pieces_in(clause.text)}
+    words = {*clause.lemmas, *pieces_in(clause.text)} - ({"sink"} if clause.verb == "sink" else set())
     return next((room for room, those in deed_table().rooms.items() if words & set(those)), None)

@@ -16,7 +16,14 @@ from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
 from planner_service.composition.caption_senses import contradicted, is_shown, shows
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, is_another, pieces_in
+from planner_service.composition.deed_lexicon import (
+    Deed,
+    DeedRow,
+    captions_of_gestures,
+    deed_of,
+    is_another,
+    pieces_in,
+)
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of
 from planner_service.scripts.acted_beats import RESTS
@@ -168,7 +175,7 @@ class DeedReader:
         found, likely = self._deed(clause, about), self.likely(clause)
         if found is not None and likely is not None and found.skill in RISINGS:
             return replace(found, skill=_rising(found, likely))
-        found = _in_particular(found, likely) if found is not None and likely is not None else found
+        found = _in_particular(found, likely, clause) if found is not None and likely is not None else found
         if found is None or found.named or found.skill is not Skill.TOUCH:
             return found
         pieces = (*found.pieces, *(likeliest_pieces(likely) if likely is not None else ()))
@@ -181,7 +188,7 @@ class DeedReader:
             told = _without(told, never)
             if told is None or (told.row.captions and self._misled(clause)):
                 return told  # nothing else is played for what would be shown by its opposite
-        if likely is None or (told is not None and told.row.why):
+        if likely is None or (told is not None and (told.row.why or told.is_gesture)):
             return told
         skill, best = likely.best
         most = likely.captions[skill, best]
@@ -203,7 +210,8 @@ class DeedReader:
     def heard(self, one: ReadBeat) -> ReadBeat:
         """A beat with what the rules of reading have not understood of it: that it is done, or a mood it shows."""
         likely = self.likely(one.clause) if one.beat.kind in ("deed", "feeling", "other") else None
-        if likely is None:
+        told = deed_of(one.clause) if one.beat.kind == "deed" else None
+        if likely is None or (told is not None and told.is_gesture):
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
@@ -224,6 +232,9 @@ class DeedReader:
         """Whether some keyframe shows a clause's deed, or they only stand for it; `placed` where the place is known."""
         if is_gainsaid(clause, keyframes):
             return False
+        if deed.is_gesture and not deed.row.stands:
+            own = (*deed.row.captions, *deed.row.seated, *deed.row.lying)
+            return any(one.caption in own for one in keyframes)
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
         if likely is None or not keyframes or deed.row.stands:
             return by_table
@@ -240,7 +251,7 @@ class DeedReader:
     def hardly_shows(self, clause: Clause, deed: Deed, mood: Emotion, least: float = HARDLY) -> bool:
         """Whether a deed's captions are taken for what a clause tells less likely than `least`."""
         likely = self.likely(clause)
-        if likely is None:
+        if likely is None or deed.is_gesture:
             return False
         at_rest = max(likely.of(Skill.SITDOWN, deed.row.seated), likely.of(Skill.LIEDOWN, deed.row.lying))
         return min(max(likely.of(deed.skill, shown_by(deed, mood)), at_rest), likely.shown) < least
@@ -248,7 +259,7 @@ class DeedReader:
     def likelihood(self, clause: Clause, keyframe: Keyframe) -> float:
         """How likely a keyframe's caption is taken for what a clause tells, wherever it is; 1 without a classifier."""
         likely = self.likely(clause)
-        if likely is None:
+        if likely is None or not likely.has_learned(keyframe.skill, keyframe.caption):
             return 1.0
         return min(likely.captions.get((keyframe.skill, keyframe.caption), 0.0), likely.shown)
 
@@ -262,8 +273,10 @@ class DeedReader:
     def likeliest(self, clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
         """Those of some captions that are as likely to show a clause as the likeliest of them; all where none is."""
         likely = self.likely(clause)
-        most = likely.of(skill, some) if likely is not None else 0.0
-        if likely is None or most < UNLIKELY:
+        if likely is None or not all(likely.has_learned(skill, one) for one in some):
+            return some
+        most = likely.of(skill, some)
+        if most < UNLIKELY:
             return some
         return [one for one in some if likely.of(skill, (one,)) >= LIKELIEST * most]
 
@@ -306,14 +319,18 @@ def _without(deed: Deed | None, never: Sequence[str]) -> Deed | None:
     return replace(deed, row=replace(deed.row, captions=kept[0], seated=kept[1], lying=kept[2]))
 
 
-def _in_particular(deed: Deed, likely: Likely) -> Deed:
+def _in_particular(deed: Deed, likely: Likely, clause: Clause) -> Deed:
     """A deed of which the table has no more than its skill, with the captions that show how it is done: "sits
-    upright"."""
-    row, known = deed.row, captions()[deed.skill.value]
+    upright"; none in which hands do what is not told of."""
+    row, known = deed.row, _learned(deed.skill)
     if row.captions or row.why or deed.skill is not row.skill:
         return deed
     most = likely.of(deed.skill, known)
-    some = tuple(one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most)
+    likeliest = [one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most]
+    idle = tuple(
+        one for one in likeliest if not any(part in one for part in IN_HANDS) or shows(deed.skill, one, clause)
+    )
+    some = idle or tuple(likeliest)
     any_way = most < LIKELY or len(some) > ANY * len(known)
     if any_way or most - likely.of(deed.skill, shown_by(deed, Emotion.NEUTRAL)) < SURER_THAN_ANY:
         return deed
@@ -325,6 +342,11 @@ def _rising(deed: Deed, likely: Likely) -> Skill:
     if deed.named:
         return deed.skill if any(affords(piece, "lie") for piece in deed.pieces) else Skill.STANDUP
     return max(RISINGS, key=lambda one: likely.of(one, captions()[one.value]))
+
+
+def _learned(skill: Skill) -> list[str]:
+    """The captions of a skill that were learned."""
+    return [one for one in captions()[skill.value] if (skill, one) not in captions_of_gestures()]
 
 
 def seated_as_well(likely: Likely) -> tuple[str, ...]:
@@ -362,7 +384,7 @@ def learned_row(clause: Clause, likely: Likely) -> DeedRow:
         return tuple(one for (kind, one), share in likely.captions.items() if kind is other and share >= least)
 
     some = of(skill)
-    everything = len(some) > ANY * len(captions()[skill.value])
+    everything = len(some) > ANY * len(_learned(skill))
     return DeedRow(
         (clause.verb or clause.text,),
         skill,

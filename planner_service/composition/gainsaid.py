@@ -12,6 +12,7 @@ from planner_service.composition.deed_lexicon import pieces_in
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
 
 _THE: Final = r"(?:the|an?|his|her|their|my|its|every|each) "
@@ -19,12 +20,6 @@ _HIDDEN: Final = re.compile(rf"\b(?:under|underneath|beneath|below|behind) ({_TH
 """Where a body or a hand is that a keyframe has on a piece, or before it."""
 _INSIDE: Final = re.compile(rf"\b(?:into|inside|in) ({_THE}(?:\w+ ?){{1,2}})")
 _ON_IT: Final = re.compile(rf"\b(?:on|onto|on top of|upon) ({_THE}(?:\w+ ?){{1,2}})")
-_ENTERS: Final = frozenset(("hide", "crawl", "creep", "climb", "squeeze", "duck", "slip", "dive", "wriggle"))
-"""How a whole body gets into something."""
-_MOUNTS: Final = frozenset(
-    ("jump", "leap", "hop", "stand", "step", "climb", "clamber", "balance", "spring", "scramble")
-)
-"""How a body gets on its feet on something."""
 
 
 def is_gainsaid(clause: Clause, keyframes: Sequence[Keyframe]) -> bool:
@@ -46,10 +41,10 @@ def _is_another_place(clause: Clause, keyframe: Keyframe) -> bool:
     covered = lain and any(word in things_called("bedding") for word in clause.lemmas)  # "under the bed covers"
     if any(not (seated and not affords(piece, "sit")) for piece in hidden) and not covered:
         return True  # but one sits behind a desk
-    if clause.verb in _ENTERS and (hidden or _INSIDE.search(clause.text)):
+    if clause.verb in theme_words()["entering_verbs"] and (hidden or _INSIDE.search(clause.text)):
         inside = [piece for place in _INSIDE.findall(clause.text) for piece in pieces_in(place)]
         if any(not affords(piece, "lie") and not affords(piece, "sit") for piece in inside):
             return True
     seats = [piece for place in _ON_IT.findall(clause.text) for piece in pieces_in(place) if affords(piece, "sit")]
     lain = lain and all(affords(piece, "lie") for piece in seats)
-    return clause.verb in _MOUNTS and bool(seats) and not lain
+    return clause.verb in theme_words()["mounting_verbs"] and bool(seats) and not lain

@@ -16,10 +16,9 @@ import numpy as np
 
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.body_track import BodyTrack
-from planner_service.composition.caption_senses import shows
+from planner_service.composition.caption_senses import only_in, shows
 from planner_service.composition.deed_lexicon import (
     Deed,
-    DeedRow,
     deed_table,
     listed_places,
     names_things,
@@ -30,8 +29,21 @@ from planner_service.composition.deed_lexicon import (
 )
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
+from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
-from planner_service.composition.rest_place import dozing, is_beside, is_there, lies, only_stands_for, sits_up
+from planner_service.composition.rest_place import (
+    GETS_THERE,
+    dozing,
+    goes_on,
+    is_beside,
+    is_there,
+    lies,
+    on_feet,
+    on_seat_ahead,
+    only_stands_for,
+    rises_later,
+    sits_up,
+)
 from planner_service.composition.stand_in import is_too_much
 from planner_service.composition.whereabouts import is_held, is_worn
 from planner_service.scripts.caption_fallbacks import usual
@@ -63,23 +75,13 @@ EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
 """Words before another place."""
 _MOST_PLACES: Final = 3
-_AHEAD: Final = 3
-"""Beats in which the seat that is named next is looked for."""
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
-BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
-"""Where nothing is kept that could be taken."""
 _GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
-_GETS_THERE: Final = re.compile(
-    r"\b(?:down|into|onto|back|under|climbs?|crawls?|falls?|flops?|goes|go|went|gets?|got|drops?|collapses?|curls?)\b"
+_LOW_DOWN: Final = re.compile(
+    r"\b(?:under\w*|beneath|below|behind|floor\w*|ground|rug|carpet|tiles|low\w*|bottom|kne\w+|crawl\w*|crouch\w*|prone)\b"
 )
-"""Words that tell of lying down, not of lying there."""
-_ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
-_TAKEN: Final = DeedRow(
-    ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
-)
-"""What is eaten or drunk on one's feet is taken from where it is."""
-_STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
+"""Words of what hands get down on the floor for."""
 
 
 def _not_acted(read: ReadBeat) -> str:
@@ -152,16 +154,18 @@ class KeyframeWriter:
         beat = read.beat
         deed = self._deed(read.clause) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
-        nexts = (one.room or room_of(one.clause) for one in beats[index + 1 :])
-        self._ahead = next(filter(None, nexts), None)
+        nexts = beats[index + 1 :]
+        self._ahead = next(filter(None, (one.room or room_of(one.clause) for one in nexts)), None)
         if beat.kind in NOT_ACTED:
             self.why[index] = _not_acted(read)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None:
-            deed = self.deeds[index] = self._on_seat_ahead(deed, read, beats[index + 1 : index + 1 + _AHEAD])
+            if self.body.resting is None:
+                deed = on_seat_ahead(deed, read, nexts, self.reader, self.places)
+            self.deeds[index] = deed
             self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
-            self._try(index, read, deed, self._rises_later(index, beats))
+            self._try(index, read, deed, rises_later(nexts, self.reader))
         elif beat.kind == "feeling" or (read.felt is not None and read.sure):
             self._feel(index, beats)
         else:
@@ -217,27 +221,6 @@ class KeyframeWriter:
             if deed is not None and not deed.row.captions:
                 self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
 
-    def _on_seat_ahead(self, deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat]) -> Deed:
-        """Who sits for it does so where the theme has them sit next: nobody changes seats for what is told before."""
-        rests = deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)
-        if not rests or deed.named or self.body.resting is not None:
-            return deed
-        told = [(one, self.reader.deed(one.clause)) for one in nexts if one.room in (None, read.room)]
-        for one, then in told:
-            if then is None or not then.named or then.skill is not Skill.SITDOWN or not self.places.has(then.pieces[0]):
-                continue
-            if one is nexts[0] and is_beside(one):  # "collapses | giggling on the rug"
-                return then
-            if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit") and then.pieces[0] != "floor":
-                return replace(deed, pieces=then.pieces, named=True)
-        return deed
-
-    def _rises_later(self, index: int, beats: Sequence[ReadBeat]) -> bool:
-        """Whether somebody gets or sits up next: who wakes before that stays in bed."""
-        deeds = ((one, self.reader.deed(one.clause)) for one in beats[index + 1 :] if one.beat.kind == "deed")
-        later, deed = next(((one, deed) for one, deed in deeds if deed is not None), (None, None))
-        return later is not None and deed is not None and (deed.skill in RISINGS or sits_up(later, deed))
-
     def _try(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool) -> None:
         """Do it, or leave it out where what would be done only stands for it and is too much for that."""
         before, parts = self.body.copy(), len(self.parts)
@@ -250,7 +233,7 @@ class KeyframeWriter:
 
     def _do(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool = False) -> None:
         self._rises = rises_later
-        deed = self._on_feet(read, deed)
+        deed = on_feet(read, deed, self.body.resting, self._clause, self._avoided)
         mood = read.beat.emotion
         self._clause = read.clause
         if deed.row.mood and mood is Emotion.NEUTRAL:
@@ -268,11 +251,13 @@ class KeyframeWriter:
                     self._rise(index, deed, mood)
             case Skill.STANDUP | Skill.GETUP:
                 self._rise(index, deed, mood)
-            case Skill.LOCO if self._goes_on(read, deed):
+            case Skill.LOCO if resting is not None and goes_on(read, deed):
                 self.body.show(index)
             case Skill.LOCO if deed.row.seated and resting is not None and resting.skill is Skill.SITDOWN:
-                self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
-            case Skill.LOCO if deed.row.seated and lies(self.body.resting) and not deed.named:
+                self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
+            case Skill.LOCO if deed.row.lying and lies(resting) and not deed.named:
+                self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
+            case Skill.LOCO if deed.row.seated and lies(resting) and not deed.named:
                 self.body.show(index)  # "lies there and stares at the wall"
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
@@ -293,38 +278,13 @@ class KeyframeWriter:
 
     def _is_on_body(self, index: int, read: ReadBeat) -> bool:
         """Whether what hands would do it to is held or worn already: nobody walks to it, and it is not seen."""
-        holds = is_held(read.clause) or (
-            read.clause.verb in ("hold", "clutch") and self.body.whereabouts.holds(read.clause)
-        )
+        holds = is_held(read.clause) or self.body.whereabouts.in_hand(read.clause)
         worn = is_worn(read.clause) and not pieces_in(read.clause.text)
         if not (holds or worn):
             return False
         self.why[index] = HELD
         self.deeds.pop(index, None)
         return True
-
-    def _on_feet(self, read: ReadBeat, deed: Deed) -> Deed:
-        """What is done at rest, where it is done standing: as is said, or as one is while nothing is said."""
-        at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
-        at = () if BY_A_WALL.search(read.text) else at
-        stands, last = bool(_ON_FEET.search(read.text)), self._clause
-        goes_on = self.body.resting is None and last is not None and last.sentence == read.clause.sentence
-        if deed.row.rests and stands and at:
-            return Deed(_TAKEN, Skill.TOUCH, at, True)
-        if deed.row.rests and (stands or deed.skill in self._avoided):
-            return Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
-        if deed.row.standing and goes_on and not (deed.named or read.clause.verb == "sit"):
-            return Deed(_STANDING, Skill.LOCO, (), False)
-        return deed
-
-    def _goes_on(self, read: ReadBeat, deed: Deed) -> bool:
-        """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
-        would only stand for it."""
-        stands_in = bool(deed.row.captions) and not any(
-            shows(Skill.LOCO, one, read.clause) for one in deed.row.captions
-        )
-        rests = self.body.resting is not None and not deed.named and not deed.row.seated
-        return rests and (stands_in or (is_beside(read) and deed.row.captions == _STANDING.captions))
 
     def _rest(
         self, index: int, read: ReadBeat, deed: Deed, mood: Emotion, skill: Skill, captions: Sequence[str]
@@ -351,7 +311,7 @@ class KeyframeWriter:
                 return
         if resting is not None and here:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
-        begins = not self.keyframes and skill is Skill.LIEDOWN and not _GETS_THERE.search(read.text)
+        begins = not self.keyframes and skill is Skill.LIEDOWN and not GETS_THERE.search(read.text)
         if self._add(index, read, deed, mood, skill, shown):
             if begins and self._rises:  # who "cannot sleep. He gets up" lies there when the story begins
                 self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
@@ -382,6 +342,9 @@ class KeyframeWriter:
                 self.keyframes[-1] = last.model_copy(update={"caption": ways[0]})
             self.body.show(index)
             return
+        if self.body.resting is None and not deed.named and any(one.skill in RISINGS for one in self.keyframes):
+            self.why[index] = "the body is on its feet already"
+            return
         if self.body.resting is None:
             self._begin(index, deed, mood)
         if self.body.resting is None:
@@ -410,6 +373,10 @@ class KeyframeWriter:
                 self.body.show(index)
                 return
             caption = others[0]
+        if deed.is_gesture and not deed.row.walks and piece != "floor":  # gone to, then done there
+            if not self.body.is_there(piece, read.room):
+                self.body.put(index, Skill.LOCO, mood, usual(Skill.LOCO, mood), piece, read.room)
+            piece = "floor"
         self.body.put(index, Skill.LOCO, mood, caption, piece, read.room)
         self.body.resting = None
         if deed.named and piece != "floor":
@@ -446,6 +413,8 @@ class KeyframeWriter:
     ) -> bool:
         """A keyframe at furniture: of a script where one does the same, else written; False where there is none."""
         part = self.part_of(index) if mood is read.beat.emotion else None
+        if part is not None and is_gainsaid(read.clause, part.keyframes[-1:]):
+            part = None
         at = next((one.furniture for one in self.keyframes[:-3:-1] if not one.on_floor), "floor")
         by_pronoun = deed.named and bool({"it", "them"} & {*read.clause.lemmas}) and not pieces_in(read.clause.text)
         meant = replace(deed, named=deed.named and not by_pronoun)  # "it" is the parcel, not the table it was set on
@@ -482,7 +451,8 @@ class KeyframeWriter:
             caption = others[0]
         self.body.is_there(piece, room)
         for here in self.keyframes[-1:]:  # where one is nobody walks to
-            room = here.room if here.furniture == piece != "floor" and None in (room, here.room) else room
+            same = here.furniture == piece and (piece != "floor" or self.body.resting is not None)
+            room = here.room if same and None in (room, here.room) else room
         self.body.put(index, skill, mood, caption, piece, room)
         self._lay(read, skill)
         return True
@@ -506,10 +476,23 @@ class KeyframeWriter:
 
     def _one_of(self, captions: Sequence[str], mood: Emotion, index: int, skill: Skill) -> str:
         """One caption by the seed, of those that are likeliest to show it and that the library uses in the mood."""
-        captions = self.reader.likeliest(self._clause, skill, captions) if self._clause else captions
+        if self._clause is not None:
+            captions = _seen(self._clause, skill, captions)
+            captions = self.reader.likeliest(self._clause, skill, captions)
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
+    """Those of some captions that a deed may be seen in: the only ones that show it, of the skill's where they have
+    none, and nobody gets down on the floor for what is not told to be low."""
+    only = [[one for one in those if any(part in one.lower() for part in only_in(clause) or ())]
+            for those in (some, captions()[skill.value])]  # fmt: skip
+    if any(only):
+        return only[0] or only[1]
+    standing = [one for one in some if "prone" not in one or _LOW_DOWN.search(clause.text)]
+    return standing or (TOUCHES if skill is Skill.TOUCH else some)
 
 
 def _is_at(keyframe: PlannedKeyframe, deed: Deed) -> bool:

@@ -1,16 +1,37 @@
-"""Who rests where: what is done on the seat or bed that a body is on already, and what it would have to get up for."""
+"""Who rests where: what is done on the seat or bed that a body is on already, or will be, and what on its feet."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from typing import Final
 
 from motion_backend.motion import RISINGS, Skill
-from planner_service.composition.deed_lexicon import Deed
+from planner_service.composition.caption_senses import shows
+from planner_service.composition.deed_lexicon import Deed, DeedRow, where
+from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import HARDLY, HARDLY_HERE, DeedReader, seated_as_well
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
+
+AHEAD: Final = 3
+"""Beats in which the seat that is named next is looked for."""
+BY_A_WALL: Final = re.compile(r"\b(?:by|at|near|against) (?:the|a|an) (?:\w+ )?(?:window|door|wall)\b")
+"""Where nothing is kept that could be taken."""
+GETS_THERE: Final = re.compile(
+    r"\b(?:down|into|onto|back|under|climbs?|crawls?|falls?|flops?|goes|go|went|gets?|got|drops?|collapses?|curls?)\b"
+)
+"""Words that tell of lying down, not of lying there."""
+_ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
+_TAKEN: Final = DeedRow(
+    ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
+)
+"""What is eaten or drunk on one's feet is taken from where it is."""
+_STANDING: Final = DeedRow(("stand",), Skill.LOCO, captions=("stand still",))
 
 
 def lies(resting: PlannedKeyframe | None) -> bool:
@@ -57,3 +78,57 @@ def sits_up(read: ReadBeat, deed: Deed) -> bool:
 def is_beside(read: ReadBeat) -> bool:
     """Whether it is done while something else is: "sits in the dark, | listening"."""
     return read.clause.joint in ("ing", ",", "while") and read.clause.text.split()[0].endswith("ing")
+
+
+def on_seat_ahead(
+    deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat], reader: DeedReader, places: DeedPlaces
+) -> Deed:
+    """Who sits for it does so where the theme has them sit next: nobody changes seats for what is told before."""
+    if deed.named or deed.skill not in (Skill.SITDOWN, Skill.LIEDOWN):
+        return deed
+    told = [(one, reader.deed(one.clause)) for one in nexts[:AHEAD] if one.room in (None, read.room)]
+    for one, then in told:
+        if then is None or not then.named or then.skill is not Skill.SITDOWN or not places.has(then.pieces[0]):
+            continue
+        if one is nexts[0] and is_beside(one):  # "collapses | giggling on the rug"
+            return then
+        if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit") and then.pieces[0] != "floor":
+            return replace(deed, pieces=then.pieces, named=True)
+    return deed
+
+
+def rises_later(nexts: Sequence[ReadBeat], reader: DeedReader) -> bool:
+    """Whether somebody gets or sits up next, or is told to lie there: who wakes before that stays in bed."""
+    deeds = ((one, reader.deed(one.clause)) for one in nexts if one.beat.kind == "deed")
+    later, deed = next(((one, deed) for one, deed in deeds if deed is not None), (None, None))
+    if later is None or deed is None:
+        return False
+    stays = deed.skill is Skill.LIEDOWN and not (GETS_THERE.search(later.text) or "asleep" in later.text)
+    return deed.skill in RISINGS or sits_up(later, deed) or (stays and later is nexts[0])
+
+
+def on_feet(
+    read: ReadBeat, deed: Deed, resting: PlannedKeyframe | None, last: Clause | None, avoided: Collection[Skill]
+) -> Deed:
+    """What is done at rest, where it is done standing: as is said, or as one is while nothing is said; not
+    what is avoided. `last` is of what was written last."""
+    at = tuple(piece for piece in where(read.text) if affords(piece, "touch"))
+    at = () if BY_A_WALL.search(read.text) else at
+    stands = bool(_ON_FEET.search(read.text))
+    stood = resting is None and last is not None and last.sentence == read.clause.sentence
+    if deed.row.rests and stands and at:
+        return Deed(_TAKEN, Skill.TOUCH, at, True)
+    if deed.row.rests and (stands or deed.skill in avoided):
+        return Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
+    if deed.row.standing and stood and not (deed.named or read.clause.verb == "sit"):
+        return Deed(_STANDING, Skill.LOCO, (), False)
+    return deed
+
+
+def goes_on(read: ReadBeat, deed: Deed) -> bool:
+    """Whether it is done where one rests, and shows no more: "sits in the dark, listening"; nobody gets up for what
+    would only stand for it."""
+    shown = deed.is_gesture or any(shows(Skill.LOCO, one, read.clause) for one in deed.row.captions)
+    stands_in = bool(deed.row.captions) and not shown
+    rests = not deed.named and not deed.row.seated
+    return rests and (stands_in or (is_beside(read) and deed.row.captions == _STANDING.captions))

@@ -32,9 +32,13 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
     seated = before.resting is None and bool(done) and done[-1].skill in _POSTURES
     if seated and (is_gainsaid(read.clause, done) or read.clause.verb in EXPRESSIONS or _FACE.search(read.text)):
         return True  # "climbs on a chair" is no sitting on it; nobody sits down for a sigh
+    rises = before.resting is not None and (
+        bool(done) and (done[-1].skill not in _POSTURES or any(k.skill in RISINGS for k in new))
+    )
+    if rises and deed.row.small:
+        return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False
-    rises = before.resting is not None and (done[-1].skill not in _POSTURES or any(k.skill in RISINGS for k in new))
     if not (seated or rises or len(new) > len(done)):
         return False  # a hand, or steps, where one is
     least = SEATED_FOR_IT if rises or (seated and done[-1].skill is Skill.SITDOWN) else GONE_FOR_IT

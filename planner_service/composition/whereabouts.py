@@ -7,45 +7,19 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from planner_service.composition.deed_lexicon import Deed, object_of
+from planner_service.themes.lexicon import grammar, is_noun
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
 from scene_graphs.furniture import class_of
 
 Spot = tuple[str | None, str]
 """Room, where it is known, and furniture word."""
 _MEANT: Final = frozenset(("it", "them", "one"))
 """Words for what was named before."""
-_TAKES: Final = frozenset(
-    [
-        "pick",
-        "take",
-        "grab",
-        "get",
-        "fetch",
-        "lift",
-        "snatch",
-        "seize",
-        "collect",
-        "gather",
-        "find",
-        "pull",
-        "remove",
-        "hold",
-        "clutch",
-        "carry",
-    ]
-)
-"""What is so is in the hands from then on."""
-_PUTS: Final = frozenset(
-    ["put", "set", "lay", "place", "drop", "throw", "toss", "fling", "chuck", "hang", "leave", "rest", "stack"]
-)
-_COMES_OUT: Final = frozenset(["find", "discover", "uncover", "reveal"])
-"""What is so after something was opened comes out of that, where no place is named."""
-_OPENS: Final = frozenset(["open", "unwrap", "unlock", "unpack", "unzip", "untie", "tear"])
-"""Things are taken out of what is so."""
-_WHERE_IT_IS: Final = frozenset(["open", "unwrap", "untie", "unseal", "cut", "slice", "examine", "inspect", "study"])
-"""What is so is done where the thing is, wherever else it is done to others."""
 _SUPPORTS: Final = frozenset(("table", "closet", "shelf", "side", "media"))
 """Classes of furniture that only bear or keep a thing: what is done there may be done at another of them."""
+_IN_HAND: Final = frozenset(["hold", "clutch", "close", "shut", "fold", "unfold", "refold"])
+"""What is so is done in the hands, where the thing is in them."""
 _HELD: Final = re.compile(
     r"(?:holding|clutching|hugging|cradling|gripping|grasping|carrying|wearing|still holding)\b", re.IGNORECASE
 )
@@ -64,6 +38,18 @@ def is_worn(clause: Clause) -> bool:
     return bool(_WORN.search(clause.text))
 
 
+def _head_of(clause: Clause) -> str:
+    """The last of the nouns that name what a clause's deed is done to: of "the photo album" the album."""
+    noun = object_of(clause)
+    at = clause.lemmas.index(noun, 1) if noun else 0
+    others = grammar().adverbs | grammar().prepositions | grammar().marks
+    for after in clause.lemmas[at + 1 :] if noun else ():
+        if after in others or not is_noun(after):
+            break
+        noun = after
+    return noun
+
+
 @dataclass
 class Whereabouts:
     """What is known of the places of things, as a story goes on."""
@@ -79,13 +65,14 @@ class Whereabouts:
     def laid(self, clause: Clause, spot: Spot) -> None:
         """Hands do a clause's deed at a place."""
         noun = self._thing(clause)
-        self._opened = spot if clause.verb in _OPENS else self._opened if self._comes_out(clause) else None
+        opens = clause.verb in theme_words()["opening_verbs"]
+        self._opened = spot if opens else self._opened if self._comes_out(clause) else None
         if not noun:
             return
         self._named = noun
         spots = self._spots.setdefault(noun, [])
         spots += [] if spots[-1:] == [spot] else [spot]
-        (self._held.add if clause.verb in _TAKES else self._held.discard)(noun)
+        (self._held.add if clause.verb in theme_words()["taking_verbs"] else self._held.discard)(noun)
 
     def brought(self, clause: Clause, spot: Spot) -> None:
         """A thing is carried somewhere."""
@@ -94,9 +81,9 @@ class Whereabouts:
             self._spots.setdefault(noun, []).append(spot)
             self._held.discard(noun)
 
-    def holds(self, clause: Clause) -> bool:
-        """Whether what a clause is about is in the hands."""
-        return self._thing(clause) in self._held
+    def in_hand(self, clause: Clause) -> bool:
+        """Whether a clause's deed is done in the hands, to what is in them: who took the album "closes the album"."""
+        return clause.verb in _IN_HAND and self._thing(clause) in self._held
 
     def of(self, clause: Clause, deed: Deed) -> Spot | None:
         """Where the thing is that hands do a deed to: where it was last, where it came from for "puts it back"; None
@@ -108,21 +95,21 @@ class Whereabouts:
         noun = self._thing(clause)
         spots = self._spots.get(noun)
         elsewhere = deed.pieces and class_of(deed.pieces[0]) not in _SUPPORTS
-        if elsewhere and clause.verb not in _WHERE_IT_IS:
+        if elsewhere and clause.verb not in theme_words()["staying_verbs"]:
             return None
         if not spots:
             return None
         if "back" in clause.lemmas or clause.verb in ("return", "replace"):
             return spots[0]
-        return None if noun in self._held or clause.verb in _PUTS else spots[-1]
+        return None if noun in self._held or clause.verb in theme_words()["putting_verbs"] else spots[-1]
 
     def _thing(self, clause: Clause) -> str:
         """What a clause's deed is done to."""
         meant = self._named if _MEANT & set(clause.lemmas[1:4]) else ""
-        return meant or object_of(clause)
+        return meant or _head_of(clause)
 
     def _comes_out(self, clause: Clause) -> bool:
         """Whether a thing is taken out of what was opened just before."""
-        out = clause.verb in _TAKES and clause.lemmas[1:2] == ("out",)
-        found = clause.verb in _COMES_OUT and not ({*clause.lemmas} & _MEANT)
+        out = clause.verb in theme_words()["taking_verbs"] and clause.lemmas[1:2] == ("out",)
+        found = clause.verb in theme_words()["finding_verbs"] and not ({*clause.lemmas} & _MEANT)
         return self._opened is not None and (out or found)

@@ -167,8 +167,9 @@ def in_order(fits: Sequence[Sequence[bool]]) -> frozenset[int]:
         found = dict(best)
         for first, taken in best.items():
             column = next((place for place in range(first, len(columns)) if columns[place]), None)
-            if column is not None and _better((*taken, row), found.get(column)):
-                found[column] = (*taken, row)
+            if column is not None:
+                others = [found[column]] if column in found else []
+                found[column] = min([(*taken, row), *others], key=lambda rows: (-len(rows), rows))
         best = found
     most = min(best.values(), key=lambda rows: (-len(rows), rows))
     return frozenset(most)
@@ -182,10 +183,6 @@ def same_words(text: str, other: str) -> bool:
 
 def _shows_a_deed(keyframe: PlannedKeyframe, beats: Sequence[LabelledBeat]) -> bool:
     return any(one.names_a_deed and one.shown_by(keyframe) for beat in beats for one in beat.shown_by)
-
-
-def _better(rows: tuple[int, ...], others: tuple[int, ...] | None) -> bool:
-    return others is None or (-len(rows), rows) < (-len(others), others)
 
 
 def _stems(text: str) -> frozenset[str]:

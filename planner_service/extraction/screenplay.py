@@ -55,17 +55,14 @@ def _parts(block: list[str], cast: set[str]) -> Iterator[Part]:
         yield Part("action", _in_small_letters(" ".join(block), cast))
         return
     speaker = _name(block[0])
-    for aside, lines in groupby(_asides(" ".join(block[1:])), key=lambda part: part.startswith("(")):
+    told = [part for part in re.split(r"(\([^()]*\))", " ".join(block[1:])) if part.strip()]
+    for aside, lines in groupby(told, key=lambda part: part.startswith("(")):
         words = " ".join(lines).strip("() ")
         # "(sinks onto the sofa)" is done; "(angrily)" and "(sighing)" are how something is said.
         if aside and is_verb(words.partition(" ")[0]) and has_verb(words) and not re.fullmatch(r"\w+ing", words):
             yield Part("action", f"{speaker} {words}.", speaker)
         elif words:
             yield Part("speech", words, speaker)
-
-
-def _asides(speech: str) -> list[str]:
-    return [part for part in re.split(r"(\([^()]*\))", speech) if part.strip()]
 
 
 def _is_speech(block: list[str]) -> bool:

@@ -50,7 +50,9 @@ def summarise(clauses: Sequence[str], keyframes: Sequence[Keyframe], emotion: st
     `clauses` are without subjects ("slumped onto the couch"); those that cannot be told of one person alone are left
     out, and where none is left the keyframes are told plainly.
     """
-    told = [told for clause in clauses if (told := in_present(clause, names)) and _tells(told)]
+    told = [
+        told for clause in clauses if (told := in_present(clause, names)) and tells_of_one(f"The character {told}.")
+    ]
     if not told:
         told = [_PLAINLY[keyframe.skill].format(keyframe.piece[0]) for keyframe in keyframes]
     told = list(dict.fromkeys(told))[: 2 * _A_SENTENCE]
@@ -79,10 +81,6 @@ def in_present(clause: str, names: Collection[str] = ()) -> str:
     if verb is None or not is_verb(verb[0]):
         return ""
     return f"{_NOW.get(verb[0].lower()) or third_person(verb_of(verb[0]))}{_cut(text)[verb.end() :]}"
-
-
-def _tells(told: str) -> bool:
-    return tells_of_one(f"The character {told}.")
 
 
 def _listed(clauses: Sequence[str]) -> str:

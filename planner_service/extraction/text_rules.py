@@ -54,7 +54,8 @@ def read_scene(scene: TextScene, maker: Maker, room: str = "") -> SceneRead:
     unused = tuple(
         f"{beats[at].text}: {_why(beats[at], hero, why)}" for at, why in writer.why.items() if _tells(beats[at])
     )
-    if not any(_is_deed(read) for at, read in enumerate(beats) if at not in writer.why):
+    deeds = [read.clause for at, read in enumerate(beats) if at not in writer.why and read.beat.kind == "deed"]
+    if not any(map(deed_of, deeds)):  # somebody only feels
         return SceneRead((), unused, _NOTHING if beats else "there is only speech in it", room)
     drafts: list[Draft] = []
     stretches = _cut(writer)
@@ -71,11 +72,6 @@ def _placed(beats: Sequence[ReadBeat], room: str, mood: Emotion) -> list[ReadBea
     """Beats in the room they play in, and in the scene's mood where nobody is told to feel any."""
     felt = [read.in_mood(mood) for read in beats] if mood is not Emotion.NEUTRAL else beats
     return [replace(read, room=read.room or room) for read in felt]
-
-
-def _is_deed(read: ReadBeat) -> bool:
-    """Whether a body does something, and not only feels."""
-    return read.beat.kind == "deed" and deed_of(read.clause) is not None
 
 
 def _draft(

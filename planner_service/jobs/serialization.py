@@ -9,7 +9,6 @@ What lists, events and clients see of a script and of its home: small, and store
 from __future__ import annotations
 
 from dataclasses import asdict, fields
-from typing import Any
 
 from motion_backend.motion import Action, Emotion, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
@@ -63,12 +62,9 @@ def action_from_dict(row: Json) -> Action:
     """The inverse of `action_to_dict`."""
     spot = spot_from_dict(row["spot"])
     known = {field.name for field in fields(Action)}
-    plain = {name: _tupled(value) for name, value in row.items() if name in known}
+    told = {name: value for name, value in row.items() if name in known}
+    plain: Json = {name: tuple(value) if isinstance(value, list) else value for name, value in told.items()}
     return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"]), "spot": spot})
-
-
-def _tupled(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
 
 
 __all__ = [

@@ -170,7 +170,8 @@ class Wording:
             leads = keyframe.skill == Skill.LOCO and goal is not None
             rests = goal is not None and goal.skill in RESTS
             stays = stays or (keyframe.skill in RISINGS and rests) or self._goes_on(keyframe)
-            if (rests and stays) or (leads and rests and self._goes_without_saying(keyframe)):
+            unsaid = leads and rests and keyframe.caption in templates().neutral_walks and self.variety.chance(0.5)
+            if (rests and stays) or unsaid:
                 untold = (*untold, index)
                 continue
             told.append(self._phrase((*untold, index), keyframe, leads, stays))
@@ -181,9 +182,6 @@ class Wording:
         """Whether the body sits or lies there already, as it is to."""
         before = self._rests
         return before is not None and (before.skill, before.piece) == (keyframe.skill, keyframe.piece)
-
-    def _goes_without_saying(self, walk: Keyframe) -> bool:
-        return walk.caption in templates().neutral_walks and self.variety.chance(0.5)
 
     def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool) -> Phrase:
         index, mood, known = indices[-1], keyframe.mood, templates()

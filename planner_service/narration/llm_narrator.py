@@ -16,7 +16,7 @@ from planner_service.llm.structured_output import ask
 from planner_service.narration.keyframe_phrases import Places
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.told import Span, Told
-from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe, legible
+from planner_service.scripts.script import Beat, LongScript, legible
 from scene_graphs.furniture import catalogue, display_name, is_minor
 
 _SHOWN: Final = 8
@@ -58,7 +58,7 @@ def narrate_with_model(
     """
     voice = Voice.of(character)
     moments = [
-        _Moment(k.skill, k.emotion, k.caption, _called(i, k, places or {}), k.furniture)
+        _Moment(k.skill, k.emotion, k.caption, (places or {}).get(i, (k.furniture, ""))[0], k.furniture)
         for i, k in enumerate(script.keyframes)
     ]
     prompt = prompts.read("narrate_story").fill(
@@ -118,10 +118,6 @@ def _furniture_in(text: str) -> list[str]:
     """The furniture that a text names, each once; small things and words of many meanings left out."""
     words = {display_name(category).lower() for category in catalogue().categories if not is_minor(category)} - _COMMON
     return [word for word in sorted(words) if re.search(rf"\b{re.escape(word)}s?\b", text, re.IGNORECASE)]
-
-
-def _called(index: int, keyframe: PlannedKeyframe, places: Places) -> str:
-    return places[index][0] if index in places else keyframe.furniture
 
 
 def _found_spans(text: str, furniture: Sequence[str]) -> tuple[Span, ...]:

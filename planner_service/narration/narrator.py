@@ -16,10 +16,11 @@ from itertools import groupby, pairwise
 from typing import Final
 
 from motion_backend.motion import RISINGS, Character, Skill
+from planner_service.narration.beat_stretches import Retelling, Stretch
 from planner_service.narration.keyframe_phrases import RESTS, Places, Variety, Wording
 from planner_service.narration.keyframe_sentences import sentences
 from planner_service.narration.narrative_voice import Voice
-from planner_service.narration.retold_theme import Retelling, Stretch, retell
+from planner_service.narration.retold_theme import retell
 from planner_service.narration.story_words import headline, story_words, title_of
 from planner_service.narration.tense import bases, form_of
 from planner_service.narration.told import Told, Words, page

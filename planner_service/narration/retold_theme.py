@@ -1,4 +1,4 @@
-"""A theme told again in its own sentences: in the past, of the story's person, with where each beat stands in it.
+"""A theme told again in its own sentences: in the past, of the story's person.
 
 Words are changed one by one where their forms tell what they are; what is not sure stays as it was written.
 """
@@ -7,11 +7,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from difflib import SequenceMatcher
-from itertools import groupby, pairwise
+from itertools import pairwise
 from typing import Final
 
+from planner_service.narration.beat_stretches import (
+    SHORT,
+    SUBJECTS,
+    Retelling,
+    Stretch,
+    Token,
+    located,
+    runs_of,
+    sentence_ends,
+    tokens_of_theme,
+)
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past
@@ -25,13 +34,6 @@ from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_plural
 from scene_graphs.furniture import is_known
 
-_TOKEN: Final = re.compile(r"[^\W_]+(?:['’-][^\W_]+)*|\s+|.")
-_QUOTED: Final = re.compile(r"[“\"][^”\"]*[”\"]")
-_END: Final = re.compile(r"[.!?…]+[\"”’')\]]*(?=\s|$)|\n+")
-_LEAST: Final = 0.4
-"""Share of a beat's words that stand together in the theme where it is told."""
-_NEAR: Final = 6
-"""Words between the two places where a beat's words stand, less one."""
 _ANYBODY: Final = frozenset(("person", "character", "protagonist", "man", "woman", "human", "someone", "somebody"))
 """Nouns that a name says all of."""
 _NO_ONE_PERSON: Final = frozenset(("who", "which", "that", "everyone", "everybody", "nobody", "all", "both"))
@@ -47,108 +49,16 @@ _THIRD: Final = {
 _OWNS: Final = re.compile(r"\s+(?!(?:and|to|in|on|at|with|from|for|by|as|of|the|a|an|his|that)\b)\w")
 """What follows "her" where it owns that."""
 _ENDINGS: Final = {"m": "am", "re": "are", "s": "is", "ve": "have", "ll": "will"}
-_SHORT: Final = re.compile(r"([a-z]+)'(m|re|s|ve|ll)")
 _BASE_AFTER: Final = frozenset(("can", "will", "may", "must", "could", "would", "might", "should", "shall", "to", "not",
                                 "did", "does", "do", "let", "lets", "cannot"))  # fmt: skip
 """Words before a verb that has no tense."""
 _TOLD_IN_PAST: Final = frozenset(("was", "were", "had", "did", "could", "would", "might", "should"))
 _AMBIGUOUS: Final = frozenset(("can", "will", "may", "must", "do", "have", "being", "been", "be", "having", "doing"))
 """Helpers that are told in the past only after a subject."""
-_SUBJECTS: Final = frozenset(("he", "she", "it", "they", "i", "we", "you", "who", "which", "that", "there"))
 _SINGULAR: Final = frozenset(("he", "she", "it", "who"))
 _PLURAL: Final = frozenset(("i", "we", "you", "they"))
 """Who does things in verbs' base forms."""
 _TENSELESS: Final = ("ing", "participle")
-
-
-@dataclass
-class Token:
-    """A word, a mark or white space of a theme, and how it is told."""
-
-    text: str
-    told: str
-    quoted: bool = False
-    before: str = ""
-    """Words that are told before it and are not the theme's."""
-    is_name: bool = False
-    """Whether it stands for the story's person."""
-
-    @property
-    def low(self) -> str:
-        """In small letters, with a straight apostrophe."""
-        return self.text.lower().replace("’", "'")
-
-    @property
-    def is_word(self) -> bool:
-        """Whether it is no mark and no white space."""
-        return self.text[0].isalnum()
-
-
-@dataclass(frozen=True)
-class Stretch:
-    """The words of one beat: tokens from `start` to `end`, exclusive; its verb, where one was found."""
-
-    beat: int
-    start: int
-    end: int
-    verb: int | None = None
-
-
-@dataclass
-class Retelling:
-    """A theme's tokens as they are told, and where its beats stand among them."""
-
-    tokens: list[Token]
-    stretches: list[Stretch] = field(default_factory=list)
-    """In the order of the theme, none over another."""
-    ends: list[int] = field(default_factory=list)
-    """The last token of each sentence."""
-
-    @property
-    def text(self) -> str:
-        """The whole of it."""
-        return "".join(token.before + token.told for token in self.tokens)
-
-    @property
-    def starts(self) -> list[int]:
-        """The first token of each sentence."""
-        return [0, *(end + 1 for end in self.ends if end + 1 < len(self.tokens))]
-
-    def words(self, stretch: Stretch) -> str:
-        """How a stretch is told."""
-        return "".join(token.told for token in self.tokens[stretch.start : stretch.end])
-
-    def asides(self) -> Iterator[range]:
-        """Tokens between beats that tell more than who does what, and when: of which no beat is made."""
-        of = {at for one in self.stretches for at in range(one.start, one.end)}
-        small = grammar().marks | grammar().prepositions | grammar().joints | grammar().adverbs | _SUBJECTS
-        for free, run in groupby(range(len(self.tokens)), key=lambda at: at not in of and at not in self.ends):
-            places = [at for at in run if self.tokens[at].is_word]
-            telling = [at for at in places if self.tokens[at].low not in small and not self.tokens[at].is_name]
-            if free and len(telling) > 1:
-                yield range(places[0], max(at for at in places if not self._names_who(at)) + 1)
-
-    def _names_who(self, at: int) -> bool:
-        """Whether a token only says who does what follows: "at two in the morning | she"."""
-        return self.tokens[at].is_name or self.tokens[at].low in _SUBJECTS
-
-    def part(self, stretch: Stretch, words: str) -> range:
-        """The tokens of a stretch where some of its words stand together; none where they do not."""
-        return self._words_in(stretch.start, stretch.end, words)
-
-    def lead(self, stretch: Stretch, words: str) -> range:
-        """The same of what stands before a stretch in its sentence: "before the interview | he bows"."""
-        start = max(one for one in self.starts if one <= stretch.start)
-        return self._words_in(start, stretch.start, words)
-
-    def _words_in(self, start: int, end: int, words: str) -> range:
-        asked = [token.low for token in _tokens(words) if token.is_word]
-        found = next(_found(self.tokens[start:end], asked), range(0))
-        return range(start + found.start, start + found.stop) if found else found
-
-    def end_of(self, stretch: Stretch) -> int:
-        """The last token of the sentence that a stretch ends in."""
-        return next(end for end in self.ends if end >= stretch.end - 1)
 
 
 def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
@@ -157,76 +67,14 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     clauses = clauses_of_text(theme)
     hero = hero_of(clauses)
     own = called(clauses, hero) or hero.lower()
-    told = Retelling(_tokens(theme))
-    told.stretches = _located(told.tokens, beats)
-    told.ends = _ends(theme, told.tokens)
+    told = Retelling(tokens_of_theme(theme))
+    told.stretches = located(told.tokens, beats)
+    told.ends = sentence_ends(theme, told.tokens)
     _put_in_past(told, plain=own in _PLURAL, all_of_it=_is_present(told))
     _tell_of(voice, told.tokens, hero, own)
     _say_who(voice, told, beats)
     _capitalise(told)
     return told
-
-
-def _tokens(theme: str) -> list[Token]:
-    quoted = [(one.start(), one.end()) for one in _QUOTED.finditer(theme)]
-    return [
-        Token(one[0], one[0], any(start <= one.start() < end for start, end in quoted))
-        for one in _TOKEN.finditer(theme)
-    ]
-
-
-def _located(tokens: Sequence[Token], beats: Sequence[Beat]) -> list[Stretch]:
-    """Where most of each beat's words stand together."""
-    places = [at for at, token in enumerate(tokens) if token.is_word]
-    words = [tokens[at].low for at in places]
-    found: list[Stretch] = []
-    for index, beat in enumerate(beats):
-        asked = [word.low for word in _tokens(beat.text) if word.is_word]
-        verb = _verb(asked, beat.who)
-        matcher = SequenceMatcher(None, words, asked, autojunk=False)
-        run = matcher.find_longest_match()
-        has_verb = run.b <= verb < run.b + run.size
-        own = matcher.find_longest_match(blo=verb)  # "with a sigh of relief, | Ida takes off her coat"
-        if own.b != verb and run.b > verb:
-            own = matcher.find_longest_match(blo=verb, bhi=run.b)
-        apart = own.b == verb and own.size > 0 and not has_verb
-        both = apart and 0 < own.a - (run.a + run.size) < _NEAR and run.size + own.size >= _LEAST * len(asked)
-        if both and 2 * own.size <= run.size:  # "| on the third try | he | bows |"
-            words[run.a : run.a + run.size] = [""] * run.size
-            found.append(Stretch(index, places[run.a], places[run.a + run.size - 1] + 1))
-            run = own
-        run = own if apart and 2 * own.size > run.size else run
-        if not run.size or (run.size < _LEAST * len(asked) and not both):
-            continue
-        words[run.a : run.a + run.size] = [""] * run.size  # which stand for no other beat
-        verb += run.a - run.b
-        inside = run.a <= verb < run.a + run.size
-        last = places[run.a + run.size - 1]
-        found.append(Stretch(index, places[run.a], last + 1, places[verb] if inside else None))
-    return sorted(found, key=lambda one: one.start)
-
-
-def _verb(words: Sequence[str], who: str) -> int:
-    """Where the verb of a beat is likely: after who does it, and adverbs."""
-    doer = [token.low for token in _tokens(who) if token.is_word]
-    at = len(doer) if list(words[: len(doer)]) == doer else 0
-    while at < len(words) and _is_adverb(words[at]):
-        at += 1
-    return at
-
-
-def _is_adverb(word: str) -> bool:
-    return word in grammar().adverbs | {"neither", "nor"} or (word.endswith("ly") and not bases(word))
-
-
-def _ends(theme: str, tokens: Sequence[Token]) -> list[int]:
-    """The last token of each sentence."""
-    at, ends, stops = 0, [], {one.end() for one in _END.finditer(theme)}
-    for index, token in enumerate(tokens):
-        at += len(token.text)
-        if at in stops:
-            ends.append(index)
-    return ends if ends[-1:] == [len(tokens) - 1] else [*ends, len(tokens) - 1]
 
 
 def _is_present(told: Retelling) -> bool:
@@ -294,18 +142,18 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     before = before.lstrip(",") if marked == word else ","
     if before in _BASE_AFTER and word not in ("is", "are"):
         return None
-    if short := _SHORT.fullmatch(word):
+    if short := SHORT.fullmatch(word):
         has = short[2] == "s" and form_of(follows) in ("participle", "past") and not is_adjective(follows)
-        known = short[1] in _SUBJECTS or (short[2] == "s" and short[1] in ("what", "where", "here", "how"))
+        known = short[1] in SUBJECTS or (short[2] == "s" and short[1] in ("what", "where", "here", "how"))
         return f"{short[1]} {_helper('has' if has else _ENDINGS[short[2]], short[1])}" if known else None
     if word in story_words().helpers and word not in _TOLD_IN_PAST:
-        after = before in _SUBJECTS or (head and word in ("have", "do") and before)
+        after = before in SUBJECTS or (head and word in ("have", "do") and before)
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
     form, base = form_of(word), word in bases(word) and not (is_adjective(word) or _is_noun(word, before))
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
-        return in_past(word) if before in _SUBJECTS or ((head or joined) and not _is_noun(word, before)) else None
+        return in_past(word) if before in SUBJECTS or ((head or joined) and not _is_noun(word, before)) else None
     if (
         form is None
         and base
@@ -358,20 +206,20 @@ def _tell_of(voice: Voice, tokens: Sequence[Token], hero: str, own: str) -> None
 
 def _name(voice: Voice, tokens: Sequence[Token], hero: str) -> None:
     """The person's name for the first words for whom the theme is about; with these, where they tell more."""
-    wanted = [token.low for token in _tokens(hero) if token.is_word]
-    place = next(_found(tokens, wanted), None)
+    wanted = [token.low for token in tokens_of_theme(hero) if token.is_word]
+    place = next(runs_of(tokens, wanted), None)
     for at in place or ():
         tokens[at].is_name = True
     if place is None or wanted[0] in _NO_ONE_PERSON:
         return
-    own = {token.low for token in _tokens(voice.name) if token.is_word} - grammar().marks
+    own = {token.low for token in tokens_of_theme(voice.name) if token.is_word} - grammar().marks
     if not own or own - {*wanted}:  # "a woman" is called "the woman" later
         noun = "".join(token.text for token in tokens[place.start : place.stop])
         plain = len(wanted) == 1 or {wanted[0], wanted[-1]} & _ANYBODY
         _call(tokens, place, voice.name if plain else f"{voice.name}, {noun[:1].lower()}{noun[1:]},")
     if wanted[-1] in _NOBODY:
         for article in ("the", "a"):
-            for again in _found(tokens, [article, wanted[-1]]):
+            for again in runs_of(tokens, [article, wanted[-1]]):
                 _call(tokens, again, voice.name)
 
 
@@ -381,18 +229,6 @@ def _call(tokens: Sequence[Token], place: range, name: str) -> None:
     for at in place:
         tokens[at].told, tokens[at].is_name = "", True
     tokens[place.start].told = f"{name} {rest}".rstrip()
-
-
-def _found(tokens: Sequence[Token], words: Sequence[str]) -> Iterator[range]:
-    """Where words stand one after the other, are not quoted, and are still told."""
-    places = [at for at, token in enumerate(tokens) if token.is_word]
-    alone = len(words) == 1
-    for number in range(len(places) - len(words) + 1 if words else 0):
-        run = places[number : number + len(words)]
-        low = [tokens[at].low for at in run]
-        low = [short[1] if alone and (short := _SHORT.fullmatch(word)) else word for word in low]
-        if low == list(words) and all(tokens[at].told and not tokens[at].quoted for at in run):
-            yield range(run[0], run[-1] + 1)
 
 
 def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:

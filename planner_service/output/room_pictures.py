@@ -43,10 +43,6 @@ def picture(layout: Layout, shown: Shown, file: Path | IO[bytes], ending: str | 
     save_figure(draw_layout(layout, spots=spots, edges=edges if shown.graph else (), route=route), file, ending)
 
 
-def _is_soft(layout: Layout, spot: Spot) -> bool:
-    return group_of(layout.object(spot.object_id).category) in ("sit", "bed")
-
-
 def _route(layout: Layout, spots: list[Spot], to: str | None) -> Array | None:
     """The way from the door to where the body stands before it lies down, sits or touches; None if there is none."""
     from scene_graphs.home import home_from_layouts
@@ -55,7 +51,8 @@ def _route(layout: Layout, spots: list[Spot], to: str | None) -> Array | None:
     wanted = [spot for spot in spots if to is None or spot.object_id == to]
     if not wanted:
         return None
-    goal = min(wanted, key=lambda spot: (_RANK[spot.affordance], not _is_soft(layout, spot))).standing
+    soft = {placed.id for placed in layout.objects if group_of(placed.category) in ("sit", "bed")}
+    goal = min(wanted, key=lambda spot: (_RANK[spot.affordance], spot.object_id not in soft)).standing
     walkable = Walkable(home_from_layouts([layout], 0), cell=cell_of(layout))
     try:
         start = _start(layout, walkable.random_point(np.random.default_rng(0), 0))

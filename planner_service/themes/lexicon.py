@@ -53,6 +53,10 @@ class EnglishGrammar:
     """What the dictionary knows as verbs too, and themes hardly ever mean so."""
     more_verbs: Words
     """Verbs that the dictionary does not know."""
+    slang: dict[str, str]
+    contractions: dict[str, str]
+    rewrites: tuple[tuple[str, str], ...]
+    """Patterns of whole words, and what is read in their place."""
 
     @cached_property
     def auxiliaries(self) -> frozenset[str]:

@@ -43,10 +43,10 @@ _SUBJECTS: Final = frozenset(("he", "she", "they", "who"))
 
 
 @cache
-def _pronouns_of_names() -> dict[str, str]:
-    """The pronouns that first names tell, "they" for those of anybody."""
+def _pronouns_by_list(listed: str) -> dict[str, str]:
+    """The pronouns that first "names", or "titles", tell; "they" for those of anybody."""
     words = theme_words()
-    return {name: pronouns for pronouns in ("she", "he", "they") for name in words[f"names_{pronouns}"]}
+    return {word: pronouns for pronouns in ("she", "he", "they") for word in words[f"{listed}_{pronouns}"]}
 
 
 def cast_by(theme: str, character: Character) -> Character:
@@ -59,7 +59,7 @@ def cast_by(theme: str, character: Character) -> Character:
     told = called(clauses, hero)
     mine = hero.lower() in _FIRST_PERSON
     name = _called_as(hero, told) or ("" if mine else _named_beside(theme, clauses, told))
-    listed = _pronouns_of_names().get(name.lower(), "")
+    listed = _pronouns_by_list("names").get(name.lower(), "")
     own = told or pronouns_of(hero) or pronouns_of(f"the {head_of(hero)}") or listed.replace("they", "")
     beside = "" if mine or (listed and _THEY.search(theme)) else _pronouns_in(theme, is_name(name))
     pronouns = own or beside or listed or default.pronouns
@@ -92,7 +92,7 @@ def _name_among(words: Sequence[str]) -> str:
 def _noun_as_told(words: Sequence[str]) -> str:
     """What a subject calls somebody who has no name: "the boy" for "a boy of six"; "" for "a person"."""
     noun = _noun_in(words)
-    if not noun or noun[-1].lower() in _ANYBODY:
+    if not noun or noun[-1].lower() in theme_words()["anybody"]:
         return ""
     first, *rest = noun[0].lower(), *noun[1:]
     if first in ("my", "our"):
@@ -112,7 +112,8 @@ def _noun_in(words: Sequence[str]) -> list[str]:
 
 
 def _is_title(word: str) -> bool:
-    return word[:1].isupper() and (word.lower().rstrip(".") in _TITLES or word.lower() in theme_words()["people"])
+    titles = _pronouns_by_list("titles").keys() | theme_words()["people"]
+    return word[:1].isupper() and word.lower().rstrip(".") in titles
 
 
 def _named_beside(theme: str, clauses: Sequence[Clause], pronoun: str) -> str:
@@ -127,7 +128,7 @@ def is_name(word: str) -> bool:
     """Whether a word is a name: one that we know, or one with a capital that no dictionary has."""
     low = word.lower()
     known = kinds_of(low) or not _not_names().isdisjoint((low, low.removesuffix("s")))  # "Mondays"
-    return word[:1].isupper() and (low in _pronouns_of_names() or not known)
+    return word[:1].isupper() and (low in _pronouns_by_list("names") or not known)
 
 
 @lru_cache(maxsize=2_000)
@@ -135,43 +136,15 @@ def pronouns_of(subject: str) -> str:
     """ "he" or "she" for a person whose name or noun tells: "Anna", "the old man", "Mrs. Hill"; else ""."""
     subject = _OWNED.sub("", subject) if _is_somebodys(subject) else subject  # "Tom's mother" is she
     words = re.findall(r"[^\W\d_]+", subject.lower())
-    known = (word if word in ("he", "she") else _TITLES.get(word) or _pronouns_of_names().get(word) for word in words)
-    told = next((pronouns for pronouns in known if pronouns), "") or _pronouns_by(_KINDS, subject)
-    return told if told in ("he", "she") else ""
-
-
-_TITLES: Final = {
-    "mr": "he", "sir": "he", "mrs": "she", "miss": "she", "ms": "she", "madame": "she", "dr": "", "prof": "",
-    "tante": "she", "oma": "she", "mama": "she", "nonna": "she",
-    "onkel": "he", "opa": "he", "papa": "he", "nonno": "he",
-}  # fmt: skip
-_ANYBODY: Final = frozenset(
-    (
-        "person",
-        "character",
-        "someone",
-        "somebody",
-        "anyone",
-        "anybody",
-        "nobody",
-        "everyone",
-        "everybody",
-        "one",
-        "human",
-    )
-)
-"""Words for people that call nobody anything."""
-_CAPITALS: Final = """
-english french german christmas easter halloween monday tuesday wednesday thursday friday saturday sunday january
-february april june july august september october november december everyone everybody everything although though
-"""
-"""Words that begin with a capital, are in no dictionary of nouns and verbs, and are nobody's name."""
+    titles, names = _pronouns_by_list("titles"), _pronouns_by_list("names")
+    known = (word if word in ("he", "she") else titles.get(word) or names.get(word) for word in words)
+    return next((one for one in known if one in ("he", "she")), "") or _pronouns_by(_KINDS, subject)
 
 
 @cache
 def _not_names() -> frozenset[str]:
     words = grammar()
-    return frozenset(_CAPITALS.split()).union(
+    return theme_words()["capitals"].union(
         words.marks, words.subjects, words.prepositions, words.joints, words.adverbs, words.auxiliaries
     )
 
@@ -280,7 +253,7 @@ def called(clauses: Sequence[Clause], hero: str) -> str:
 
 def _is_listed(hero: str) -> bool:
     """Whether it is a mere name that a list has."""
-    return hero.lower() in _pronouns_of_names()
+    return hero.lower() in _pronouns_by_list("names")
 
 
 def _may_be(subject: str, hero: str, pronoun: str) -> bool:
@@ -296,7 +269,12 @@ def _heroic(clause: Clause, pronoun: str) -> float:
     owned = first in OWNERS  # "her mum" is somebody else than she
     fits = 4 * bool(pronoun and own == pronoun and not owned)
     several = _is_plural(clause.subject)
-    small = head_of(clause.subject).lower() in {"baby", "infant", "newborn", *_ANYBODY - {"person", "character"}}
+    small = head_of(clause.subject).lower() in {
+        "baby",
+        "infant",
+        "newborn",
+        *theme_words()["anybody"] - {"person", "character"},
+    }
     return fits - small - 2 * owned - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
 
 
@@ -309,7 +287,7 @@ def _may_live(subject: str) -> bool:
 
 def _stands_for(subject: str) -> bool:
     """Whether a subject stands for somebody: "she", not "someone"."""
-    return _is_pronoun(subject) and subject.lower() not in _ANYBODY
+    return _is_pronoun(subject) and subject.lower() not in theme_words()["anybody"]
 
 
 def _is_pronoun(subject: str) -> bool:
@@ -353,7 +331,7 @@ def names_somebody(clause: Clause) -> bool:
     if clause.verb:
         return is_person(clause.doer)
     words = [token.text for token in tokens_of(clause.text)]
-    return any(word.lower() in theme_words()["people"] or word.lower() in _pronouns_of_names() for word in words)
+    return any(word.lower() in theme_words()["people"] or word.lower() in _pronouns_by_list("names") for word in words)
 
 
 def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:

@@ -64,23 +64,6 @@ _WHAT_IT_IS: Final = re.compile(
 """What was meant before is named: "unwraps it: a birthday cake"."""
 _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
-_DAYTIMES: Final = frozenset(
-    (
-        "dusk",
-        "dawn",
-        "night",
-        "midnight",
-        "evening",
-        "morning",
-        "noon",
-        "daylight",
-        "twilight",
-        "winter",
-        "summer",
-        "spring",
-    )
-)
-"""What falls, breaks or comes, and is nobody."""
 
 
 @dataclass(frozen=True)
@@ -414,7 +397,7 @@ def _subject(tokens: Sequence[Token]) -> str:
         words.pop()
     if words and words[-1].lower() in grammar().subjects:
         return words[-1]
-    if tokens and tokens[-1].low in _DAYTIMES and len(words) == 1:
+    if tokens and tokens[-1].low in theme_words()["daytimes"] and len(words) == 1:
         return words[0]  # "dusk thickened"
     if words and ("to" in (words[0].lower(), words[-1].lower()) or _describes(words)):
         return ""

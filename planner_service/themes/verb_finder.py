@@ -25,35 +25,6 @@ from planner_service.themes.things import things
 
 _WORD: Final = re.compile(r"«\d+»|\b(?:Mrs?|Ms|Dr|Prof)\.|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
 _CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
-_SHORT: Final = {"ca": "can not", "wo": "will not", "sha": "shall not"}
-_ENDS: Final = (("'ll", " will"), ("'ve", " have"), ("'re", " are"), ("'m", " am"))
-_SLANG: Final = {
-    "n": "and", "n'": "and", "'n'": "and", "cant": "can not", "wont": "will not", "gonna": "going to", "&": "and",
-    "w/o": "without", "em": "them",
-    "wanna": "want to", "gotta": "have to", "cuz": "because", "bc": "because", "w/": "with",
-}  # fmt: skip
-_DUTY: Final = (
-    r"(?!(?:he|she|they|it|i|we|you)\b)((?:(?:the|an?|his|her|their|my) (?:\w+ )?)?\w{3,}) "
-    r"(?:(?:still )?(?:had|has|needs|needed) to|must) be (\w+ed)"
-)
-"""What has to be done: "dinner had to be cooked"."""
-_LONG: Final = (
-    ("by the time", "when"), ("rather than", "instead of"), ("(?<!the )till", "until"), ("which is to say", "and"),
-    ("as soon as", "when"), ("(?:so as|in order) (?=(?:not )?to)", ""),
-    (r"(so (?:\w+ ){1,6}?)that (?=(?:i|he|she|they|we)\b)", r"\1, so "),
-    ("(?:every|each) time(?= (?:i|he|she|they|we|the|his|her|my)\\b)", "whenever"),
-    ("at (?:long )?last|in the end", "finally"),
-    (r"(?:(?<=and )|(?<=then )|(?<=, ))at the (?:very )?end,?(?= \w)(?! of)", "finally"),
-    (",? of course", ""),
-    (r"(?:go|goes|went|come|comes|came) and (?=\w)", ""),
-    ("not until(?=.* (?:did|does|do) )", "only after"),
-    (r"no sooner had (.{3,60}?),? than", r"\1 when"),
-    (r"(?:hardly|barely|scarcely) had (?=.{3,80} (?:when|before)\b)", ""),
-    (r"had (?:hardly|barely|scarcely|only just|just) (?=.{3,80} when\b)", ""),
-    (_DUTY, r"they \2 \1"),
-    ("after (?:this|that)(?=,| (?:i|he|she|they|we|it|the|his|her|my|all)\\b)", "then"),
-)  # fmt: skip
-"""Joints of several words, and those that say the same."""
 _INVERTED: Final = re.compile(r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i)\b(?= (\w+))")
 """A verb before who does it, as after "only when", "never" and "not until"."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
@@ -94,12 +65,11 @@ def tokens_of(text: str) -> list[Token]:
 def plain(text: str) -> str:
     """A text with its contractions and the commonest slang written out: "doesn't" is "does not"."""
     text = _SLANG_NOT.sub(r"\1 not", text.replace("’", "'").replace("‘", "'"))
-    text = " ".join(_SLANG.get(word.lower(), word) for word in text.split(" "))
-    text = _CONTRACTION.sub(lambda m: _SHORT.get(m[1].lower(), f"{m[1]} not"), text)
-    for short, whole in _ENDS:
-        text = re.sub(rf"(?i)(?<=\w){short}\b", whole, text)
-    for long, short in _LONG:
-        text = re.sub(rf"(?i)\b{long}\b", short, text)
+    known = grammar()
+    text = " ".join(known.slang.get(word.lower(), word) for word in text.split(" "))
+    text = _CONTRACTION.sub(lambda m: known.contractions.get(m[1].lower(), f"{m[1]} not"), text)
+    for otherwise, plainly in known.rewrites:
+        text = re.sub(rf"(?i)\b{otherwise}\b", plainly, text)
     text = _INVERTED.sub(_turned, text)
     text = re.sub(r"(?i)\b(I|he|she|they|we)'d((?: (?:never|always|often|rather|not))* (\w+))", _would, text)
     text = re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s been\b", r"\1 has been", text)

@@ -201,12 +201,7 @@ LACKED = {
     "folded_over": "lap to fold hands in",
 } | dict.fromkeys(ON_TABLE, "table before the seat")
 """What is not there, of what hands were to be on, in words."""
-WHERE = {
-    "thighs": "on its thigh",
-    "knees": "on its knee",
-    "lap": "in the lap",
-    "own_shin": "on its shin",
-}
+WHERE = {"thighs": "on its thigh", "knees": "on its knee", "lap": "in the lap", "own_shin": "on its shin"}
 """Where a hand is instead, in words."""
 ON_THE_FLOOR = {
     "thighs": "knees",

@@ -200,7 +200,8 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
     if before is not None and float(np.quantile(spare(resample(points)), NARROW)) < ROOM_TO_SPREAD:
         body.note("no room for open arms: to the front")
         style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
-    walked = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
+    solid = body.scene.obstacles.solid()
+    walked = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare, solid.depth)
     frames, body.stride, body.beyond = walked
     body.add(gesture(frames, style.doing))
 

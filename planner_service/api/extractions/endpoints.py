@@ -214,7 +214,8 @@ def _of_words(
     if _is_long(words, by_rules=parts.model is None):
         return accept_extraction(parts, caller, wanted, coming, key)
     with waiting_for_model(parts):
-        made = scenes_read(words.scenes, words.notes, _maker(words, source, means), means)
+        maker = Maker(source.name, means.library, words.kind, source.licence)
+        made = scenes_read(words.scenes, words.notes, maker, means)
     return keep_extraction(parts, caller, wanted, made, key)
 
 
@@ -223,10 +224,6 @@ def _is_long(words: Words, *, by_rules: bool) -> bool:
     if sum(len(scene.told) + len(scene.spoken) for scene in words.scenes) > LETTERS_AT_ONCE:
         return True
     return len(list(pieces_of(words.scenes))) > (AT_ONCE if by_rules else ASKED_AT_ONCE)
-
-
-def _maker(words: Words, source: Source, means: Means) -> Maker:
-    return Maker(source.name, means.library, words.kind, source.licence)
 
 
 @contextmanager

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from datetime import UTC, datetime
 
-from planner_service.api.stories.views import SLOTS, STOPPED, StoryEvent, failure_of
+from planner_service.api.stories.views import StoryEvent, failure_of, numbered_events
 from planner_service.extraction.extraction_result import stood_for
 from planner_service.jobs.extraction_stages import STAGES
-from planner_service.store.story_store import Record
+from planner_service.store.story_store import Artifact, Record
 from planner_service.store.tables import State, state_of
 from scene_graphs.json_fields import Json
 
@@ -71,27 +71,14 @@ def extraction_shown(record: Record) -> Json:
 
 
 def extraction_events(record: Record) -> Iterator[StoryEvent]:
-    """The events that an extraction's artifacts stand for, in order, and the last one if it has ended.
+    """The events that an extraction's artifacts stand for, in order, and the last one if it has ended."""
 
-    Numbers come from the positions of the artifacts: they are the same however often, and from where, one listens.
-    """
-    if record.stage is not None:
-        first = STAGES[0 if record.method == "film" else 1]
-        yield StoryEvent(1, "stage", {"stage": first, "progress": 0.0})
-    for artifact in record.artifacts:
-        number, progress = SLOTS * (artifact.position + 1), artifact.progress
-        if artifact.kind == "piece":
-            numbers = [scene["number"] for scene in artifact.summary["scenes"]]
-            ids = [draft["script"]["id"] for draft in artifact.summary["drafts"]]
-            yield StoryEvent(number, "scenes", {"scenes": numbers, "scripts": ids, "progress": progress})
-        if artifact.following is not None:
-            yield StoryEvent(number + 1, "stage", {"stage": artifact.following, "progress": progress})
-        stage = artifact.following or ("read" if artifact.kind == "piece" else STAGES[-1])
-        yield StoryEvent(number + 2, "progress", {"stage": stage, "progress": progress})
-    state = state_now(record)
-    if state in STOPPED:
-        last = record.artifacts[-1].position if record.artifacts else -1
-        data: Json = {"state": state}
-        if state == "failed":
-            data["error"] = failure_of(record)
-        yield StoryEvent(SLOTS * (last + 1) + 3, STOPPED[state], data)
+    def piece(artifact: Artifact) -> tuple[str, Json] | None:
+        if artifact.kind != "piece":
+            return None
+        numbers = [scene["number"] for scene in artifact.summary["scenes"]]
+        ids = [draft["script"]["id"] for draft in artifact.summary["drafts"]]
+        return "scenes", {"scenes": numbers, "scripts": ids}
+
+    stages = (STAGES[0 if record.method == "film" else 1], "read", STAGES[-1])
+    return numbered_events(record, state_now(record), stages, piece)

@@ -5,7 +5,7 @@ The frames of a story that are ready, from any to any, while the rest is made.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from functools import cached_property
@@ -18,7 +18,7 @@ from planner_service.narration.told import Told
 from planner_service.scripts.acted_beats import Outcome, Shot, acted_beats, beats_in, leads, lost_in_moving
 from planner_service.scripts.script import Beat
 from planner_service.store.story_store import Artifact, Record, Stories
-from planner_service.store.tables import GIVEN_UP, state_of
+from planner_service.store.tables import GIVEN_UP, State, state_of
 from scene_graphs.json_fields import Json
 
 STOPPED: Final = {"succeeded": "done", "failed": "failed", "cancelled": "cancelled"}
@@ -157,32 +157,37 @@ def _links(story_id: str) -> dict[str, str]:
 
 
 def events_of(record: Record) -> Iterator[StoryEvent]:
-    """The events that a story's artifacts stand for, in order, and the last one if the story has ended.
+    """The events that a story's artifacts stand for, in order, and the last one if the story has ended."""
 
-    Numbers come from the positions of the artifacts: they are the same however often, and from where, one listens.
-    """
-    if record.stage is not None:
-        yield StoryEvent(1, "stage", {"stage": STAGES[0], "progress": 0.0})
-    for artifact in record.artifacts:
-        yield from _events_of(artifact)
-    state = state_of(record.status)
-    if state in STOPPED:
-        last = record.artifacts[-1].position if record.artifacts else -1
-        data: Json = {"state": state}
-        if state == "failed":
-            data["error"] = failure_of(record)
-        yield StoryEvent(SLOTS * (last + 1) + 3, STOPPED[state], data)
-
-
-def _events_of(artifact: Artifact) -> Iterator[StoryEvent]:
-    number, summary, progress = SLOTS * (artifact.position + 1), artifact.summary, artifact.progress
-    if artifact.kind == "segment":
+    def segment(artifact: Artifact) -> tuple[str, Json] | None:
         names = ("index", "keyframe", "start", "end", "reached")
-        yield StoryEvent(number, "segment", {name: summary[name] for name in names} | {"progress": progress})
-    if artifact.following is not None:
-        yield StoryEvent(number + 1, "stage", {"stage": artifact.following, "progress": progress})
-    stage = artifact.following or ("move" if artifact.kind == "segment" else STAGES[-1])
-    yield StoryEvent(number + 2, "progress", {"stage": stage, "progress": progress})
+        return ("segment", {name: artifact.summary[name] for name in names}) if artifact.kind == "segment" else None
+
+    return numbered_events(record, state_of(record.status), (STAGES[0], "move", STAGES[-1]), segment)
+
+
+def numbered_events(
+    record: Record, state: State, stages: tuple[str, str, str], told: Callable[[Artifact], tuple[str, Json] | None]
+) -> Iterator[StoryEvent]:
+    """Events with numbers from the positions of artifacts: the same however often, and from where, one listens.
+
+    `stages` are the first, that of which many artifacts tell, and the last; of those `told` gives name and data.
+    """
+    first, many, last = stages
+    if record.stage is not None:
+        yield StoryEvent(1, "stage", {"stage": first, "progress": 0.0})
+    number = 0
+    for artifact in record.artifacts:
+        number, progress = SLOTS * (artifact.position + 1), artifact.progress
+        if (news := told(artifact)) is not None:
+            yield StoryEvent(number, news[0], news[1] | {"progress": progress})
+        if artifact.following is not None:
+            yield StoryEvent(number + 1, "stage", {"stage": artifact.following, "progress": progress})
+        stage = artifact.following or (last if news is None else many)
+        yield StoryEvent(number + 2, "progress", {"stage": stage, "progress": progress})
+    if state in STOPPED:
+        data: Json = {"state": state} | ({"error": failure_of(record)} if state == "failed" else {})
+        yield StoryEvent(number + 3, STOPPED[state], data)
 
 
 @dataclass(frozen=True)

@@ -44,11 +44,8 @@ async def list_captions(skill: Skilled = None) -> CaptionList:
 @vocabularies_router.get("/emotions", response_model=EmotionList)
 async def list_emotions() -> EmotionList:
     """The nine emotions, and words that mean them."""
-    return EmotionList(items=[EmotionShown(emotion=one, words=_words_of(one)) for one in EMOTIONS])
-
-
-def _words_of(emotion: Emotion) -> list[str]:
-    return [word for word in naming_words().get(emotion, ()) if "*" not in word]
+    named = {one: [word for word in naming_words().get(one, ()) if "*" not in word] for one in EMOTIONS}
+    return EmotionList(items=[EmotionShown(emotion=one, words=words) for one, words in named.items()])
 
 
 @vocabularies_router.get("/furniture", response_model=FurnitureList)

@@ -10,7 +10,7 @@ import pytest
 
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely
-from planner_service.composition.deed_lexicon import Deed, deed_of
+from planner_service.composition.deed_lexicon import Deed, captions_of_gestures, deed_of
 from planner_service.composition.deed_reader import DeedReader, learned_row
 from planner_service.composition.rest_place import only_stands_for
 from planner_service.scripts.captions import captions
@@ -30,7 +30,8 @@ def likely(
     shown: float = 0.9, moods: dict[Emotion, float] | None = None, pieces: dict[str, float] | None = None, **some: float
 ) -> Likely:
     """What is likely: captions of which a part is a keyword of `some`, underscores for spaces."""
-    every = {(Skill(skill), one): 0.01 for skill, those in captions().items() for one in those}
+    ours = ((Skill(skill), one) for skill, those in captions().items() for one in those)
+    every = dict.fromkeys((one for one in ours if one not in captions_of_gestures()), 0.01)
     for part, share in some.items():
         every |= {known: share for known in every if part.replace("_", " ") in known[1].lower()}
     places = dict.fromkeys(furniture.catalogue().categories, 0.02) | (pieces or {})
@@ -179,9 +180,22 @@ def test_what_hardly_anything_shows_is_not_done_though_the_table_has_it() -> Non
 
 
 def test_what_a_mood_shows_more_likely_than_any_caption_is_felt() -> None:
+    (beams,) = beats_of("He jumps for joy.")
+    assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.3)).heard(beams).beat.kind == "feeling"
+    assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.95)).heard(beams).beat.kind == "deed"
+
+
+def test_a_gesture_is_done_as_the_table_has_it_whatever_is_likelier() -> None:
+    at = reader(likely(moods={Emotion.HAPPY: 0.95}, skip=0.9, typing=0.99, shown=0.1))
     (laughs,) = beats_of("He laughs himself silly.")
-    assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.3)).heard(laughs).beat.kind == "feeling"
-    assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.95)).heard(laughs).beat.kind == "deed"
+    assert at.heard(laughs).beat.kind == "deed"
+    deed = at.deed(laughs.clause)
+    assert deed is not None
+    assert deed.is_gesture
+    assert deed.row.captions == ("laughing, hands on belly",)
+    laughing = Keyframe(skill=Skill.LOCO, emotion="happy", caption="laughing, hands on belly", furniture="floor")
+    assert at.is_shown(laughs.clause, deed, [laughing])
+    assert not at.is_shown(laughs.clause, deed, [laughing.model_copy(update={"caption": "stand still"})])
 
 
 def test_a_word_for_a_mood_is_felt_and_not_done() -> None:

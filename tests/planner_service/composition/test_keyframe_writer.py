@@ -205,7 +205,17 @@ def test_parts_of_scripts_do_the_beats_deed_in_its_mood_with_a_caption_that_show
         ("He dances.", ["loco floor"]),
         ("She does not sit down. She reads.", ["loco floor"]),
         ("She sits on the sofa and cries.", ["loco sofa", "sitdown sofa"]),
-        ("He throws his bag on the sofa and cries.", ["loco sofa", "touch sofa", "sitdown sofa"]),
+        ("He throws his bag on the sofa and cries.", ["loco sofa", "touch sofa", "loco floor"]),
+        (
+            "He sits on the sofa, laughs, cries and bows.",
+            ["loco sofa", *["sitdown sofa"] * 2, "standup sofa", "loco floor"],
+        ),
+        ("She wakes up. She lies there and calls her mother.", ["liedown bed", "liedown bed"]),
+        (
+            "She takes the album from the shelf, sits on the sofa and closes the album.",
+            ["loco shelf", "touch shelf", "loco sofa", "sitdown sofa"],
+        ),
+        ("She bows to the floor lamp.", ["loco floor lamp", "loco floor"]),
         ("She flops onto the sofa and watches a film.", ["loco sofa", "liedown sofa"]),
         ("He looks under the bed, behind the sofa.", ["loco bed", "touch bed", "loco sofa", "touch sofa"]),
     ],

@@ -23,7 +23,8 @@ def test_what_is_done_to_it_is_done_where_it_was_put_and_back_is_where_it_came_f
     known = Whereabouts()
     assert known.of(clause(f"wipes the {thing}"), ANYWHERE) is None
     known.laid(clause(f"takes the {thing} from the shelf"), SHELF)
-    assert known.holds(clause(f"holds the {thing}"))
+    assert known.in_hand(clause(f"holds the {thing}"))
+    assert known.in_hand(clause("closes it"))
     assert known.of(clause("wipes it"), ANYWHERE) is None, "it is in the hands"
     known.laid(clause(f"puts the {thing} on the table"), TABLE)
     for text in ("wipes it", f"wipes the {thing}", "opens it"):
