@@ -35,8 +35,8 @@ class Place:
 
 
 PLACES: Final = (
-    *(Place(across, 0.20) for across in (0.08, 0.92, 0.5)),
-    *(Place(across, bottom) for bottom in (0.45, 0.72) for across in (0.08, 0.92)),
+    *(Place(across, 0.16) for across in (0.05, 0.95, 0.5)),
+    *(Place(across, bottom) for bottom in (0.45, 0.72) for across in (0.05, 0.95)),
 )
 """The most wanted first."""
 
