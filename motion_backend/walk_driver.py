@@ -19,12 +19,12 @@ from motion_backend.backend_protocol import BodyState, History, Part
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import penetration
 from motion_backend.mocap.foot_hold import held
-from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Phase, PhaseKind, Skill, join
+from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Phase, PhaseKind, join
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.takeover import pose_of
 from motion_backend.procedural.walk.stride import Stride
-from motion_backend.procedural.walk.walk_styles import Walk, walk_style
+from motion_backend.procedural.walk.walk_styles import Walk, style_of, walk_style
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX
@@ -261,11 +261,6 @@ def by_rules(motion: Motion, why: str) -> Motion:
     """A motion of the procedural body, labelled so."""
     phases = tuple(replace(phase, backend=ProceduralBackend.name, fallback=why) for phase in motion.phases)
     return replace(motion, phases=phases)
-
-
-def style_of(action: Action) -> Walk:
-    """The way of walking to where an action is done."""
-    return walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
 
 
 def unlike_people(action: Action) -> str:

@@ -25,6 +25,8 @@ GRACE: Final = 8
 """Seconds that requests and workers have to end when the service stops."""
 PATIENCE: Final = 5
 """Seconds of these that a request may wait for the language model."""
+FIRST: Final = "She comes home and sits down."
+"""What is read before anything is asked for."""
 log = structlog.get_logger("sims.serve")
 
 
@@ -151,6 +153,7 @@ def serve(settings: Settings) -> None:
             if self.started:
                 port = listening.getsockname()[1]
                 print(f"sims: ready at {_address(settings.host, port)} ({settings.workers} workers)", flush=True)  # noqa: T201
+                threading.Thread(target=warm_up, name="warm up", daemon=True).start()
 
     listening = listen(settings)
     config = uvicorn.Config(
@@ -166,6 +169,18 @@ def serve(settings: Settings) -> None:
         Server(config).run(sockets=[listening])
     finally:
         supervisor.stop()
+
+
+def warm_up() -> None:
+    """What the first visitor would wait for: the tables of English words that a theme is read with, the modules that
+    build bodies."""
+    from motion_backend.body.cast import Look
+    from motion_backend.body.character_mesh import build_character
+    from motion_backend.skeleton import build_skeleton
+    from planner_service.pipeline import StoryRequest
+
+    someone = StoryRequest(FIRST).character
+    build_character(build_skeleton(someone.height), Look.of(someone))
 
 
 def listen(settings: Settings) -> socket.socket:

@@ -10,8 +10,8 @@ from motion_backend.backend_protocol import BodyState, Part, PartKind
 from motion_backend.diffusion.plan_follower import LAID_OVER, Followed, PlanFollower
 from motion_backend.diffusion.planned_passages import passages_of
 from motion_backend.motion import Motion, Posture
-from motion_backend.procedural.walk.walk_styles import walk_style
-from motion_backend.walk_driver import BORROWED, by_rules, ruled, style_of
+from motion_backend.procedural.walk.walk_styles import style_of, walk_style
+from motion_backend.walk_driver import BORROWED, by_rules, ruled
 from scene_graphs.home import Home
 
 SINCE: Final = "since"

@@ -161,8 +161,10 @@ class _Arms(NamedTuple):
 
     def on(self, detours: Array) -> _Tried:
         """The arms on detours (2, T, 4)."""
-        pose = self.moved(detours)
-        arms = Arm.of(pose, self.skeleton, 0, self.chest), Arm.of(pose, self.skeleton, 1, self.chest)
+        pose, arms = self.pose, self.wanted
+        if detours.any():
+            pose = self.moved(detours)
+            arms = Arm.of(pose, self.skeleton, 0, self.chest), Arm.of(pose, self.skeleton, 1, self.chest)
         hands = _hands(arms)
         first, second = (_rows(arm, self.contacts(arms, hands, index)) for index, arm in enumerate(arms))
         frames, wanted = (np.concatenate(pair) for pair in zip(first[::2], second[::2], strict=True))
@@ -183,15 +185,14 @@ def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
     from scipy.ndimage import uniform_filter1d
 
     whole = _Arms.of(pose, around, skeleton)
-    seen, hands = np.zeros(len(pose), dtype=bool), _hands(whole.wanted)
-    for index, arm in enumerate(whole.wanted):
-        deep = whole.contacts(whole.wanted, hands, index).depth(len(pose))
-        seen |= (deep > SEEN) | (_strain(arm, arm.limb) > STRAINED)
+    wanting, seen = whole.on(np.zeros((2, len(pose), 4))), np.zeros(len(pose), dtype=bool)
+    for rows in wanting.rows:
+        seen[rows.frames[rows.wanted > SEEN]] = True
     if not seen.any():
         return pose
     at, near = whole.about(seen)
     free, damped = bool(at[-1] == len(pose) - 1), np.ones(len(at))
-    best, barren = near.on(np.zeros((2, len(at), 4))), 0
+    best, barren = wanting.part(at, near.pose), 0
     for _ in range(ROUNDS):
         if best.deepest < OUT or barren == BARREN:
             break
@@ -256,6 +257,11 @@ class _Tried(NamedTuple):
     deepest: float
     """The longest of them (metres)."""
 
+    def part(self, at: NDArray[np.intp], pose: Pose) -> _Tried:
+        """The same of some frames, in which they are in a pose."""
+        first, second = (rows.part(at) for rows in self.rows)
+        return _Tried(self.detours[:, at], pose, (first, second), self.missing[at], self.deepest)
+
 
 class _Rows(NamedTuple):
     """M equations of one round for one arm: how far what is in something goes out of it with a wrist and an elbow."""
@@ -266,6 +272,11 @@ class _Rows(NamedTuple):
     """By the wrist along the axes, and by the elbow's swing. (M, 4)."""
     wanted: Array
     """(M,) metres."""
+
+    def part(self, at: NDArray[np.intp]) -> _Rows:
+        """Those of some frames."""
+        kept = np.isin(self.frames, at)
+        return _Rows(np.searchsorted(at, self.frames[kept]), self.gone[kept], self.wanted[kept])
 
 
 def _rows(arm: Arm, contacts: Contacts) -> _Rows:

@@ -122,7 +122,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
     pose = gazing(pose, body, part)
-    if part.kind is not PartKind.REACH and posture is not Posture.LYING:
+    if posture is not Posture.LYING:
         pose = head_clear(pose, around.solid, body.skeleton)
     upright, pose = pose, balanced(pose, body.phases, body.skeleton, body.before, body.beyond)
     if body.stride is not None:

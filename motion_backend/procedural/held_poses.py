@@ -234,11 +234,7 @@ def _bends(slow: list[Array], shift: tuple[Array, Array], row: Idle) -> Array:
     """How the trunk bends and turns while it holds, besides its breath: forwards, to the left, to the side. (T, 3)."""
     forward, side = shift
     return np.stack(
-        [
-            row.spine_forward_rad * slow[0] + forward,
-            row.spine_turn_rad * slow[1],
-            row.spine_side_rad * slow[2] + side,
-        ],
+        [row.spine_forward_rad * slow[0] + forward, row.spine_turn_rad * slow[1], row.spine_side_rad * slow[2] + side],
         axis=1,
     )
 

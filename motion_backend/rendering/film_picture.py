@@ -31,15 +31,15 @@ def to_rgb(planes: Planes) -> NDArray[np.uint8]:
     return np.asarray(np.clip(np.round(rgb), 0, 255), dtype=np.uint8)
 
 
-def lay_words(planes: Planes, letters: NDArray[np.float32], bottom: float, shade: float) -> None:
+def lay_words(planes: Planes, letters: NDArray[np.float32], bottom: float, shade: float, across: float = 0.5) -> None:
     """White words (h, w), how much of each pixel they cover, on a band with that share of the light that was there.
 
-    In the middle of the picture, ending at that share of its height.
+    They end at the share `bottom` of the picture's height, with the share `across` of the free width on their left.
     """
     bright, *colors = split(planes)
     height, width = (2 * (side // 2) for side in letters.shape)
     top = 2 * round(bottom * bright.shape[0] / 2) - height
-    left = 2 * ((bright.shape[1] - width) // 4)
+    left = 2 * int(across * (bright.shape[1] - width) / 2)
     cover = letters[:height, :width]
     part = bright[top : top + height, left : left + width]
     part[:] = BLACK + (part.astype(np.float32) - BLACK) * (shade * (1 - cover)) + (WHITE - BLACK) * cover

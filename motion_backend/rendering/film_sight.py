@@ -37,6 +37,8 @@ CROWDED: Final = 0.12
 """The share of a picture that may be of what is much nearer than the body: a wall, the back of a screen."""
 MUCH: Final = 0.6
 """From which share of the way to the body on nothing is much nearer."""
+LEGS: Final = tuple(INDEX[f"{side}_{name}"] for side in ("left", "right") for name in ("hip", "knee", "ankle", "foot"))
+"""What crowds a picture of a face as furniture does, at any distance: the knees of who sleeps curled up."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,8 @@ class Appearances:
     """How much skin is around each vertex. (V,)."""
     part: NDArray[np.bool_]
     """Which vertices are the head's, or of hands that are looked at the hands'. (V,)."""
+    legs: NDArray[np.bool_]
+    """Which vertices are the legs'. (V,)."""
     aspect: float
     """How many times pictures are as wide as high."""
     faces: NDArray[np.integer]
@@ -67,7 +71,8 @@ class Appearances:
         areas = np.zeros(len(mesh.vertices))
         np.add.at(areas, mesh.faces, whole[:, None])
         part = np.isin(mesh.joints[:, 0], framing.hands if framing.subject is Subject.HANDS else INDEX["head"])
-        return Appearances(vertices, normals, areas, part, aspect, mesh.faces, framing.subject)
+        legs = np.isin(mesh.joints[:, 0], LEGS)
+        return Appearances(vertices, normals, areas, part, legs, aspect, mesh.faces, framing.subject)
 
     @cached_property
     def size(self) -> tuple[int, int]:
@@ -96,28 +101,38 @@ class Appearances:
             x, y, nearness = np.moveaxis(camera.project(viewed, self.size), -1, 0)
             inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
             column, row = (np.clip(value, 0, most - 1).astype(int) for value, most in ((x, width), (y, height)))
-            before = near if self.subject is Subject.BODY else self._with_body(near, points, camera)
+            before = near if self.subject is Subject.BODY else self._with_body(near, points, camera)[0]
             seen = inside & (before[row, column] <= nearness)
             for part, weights in enumerate((self.areas[turned], self.areas[turned] * self.part[turned])):
                 shares[frame, part] = weights @ seen / max(weights.sum(), 1e-9)
         return shares
 
-    def _with_body(self, near: Real, points: NDArray[np.float32], camera: Camera) -> Real:
-        """How near what is nearest is with a body (V, 3) too. (height, width)."""
+    def _with_body(
+        self, near: Real, points: NDArray[np.float32], camera: Camera
+    ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+        """How near what is nearest is with a body (V, 3) too, and which triangle of the body it is, or -1.
+        (height, width) each."""
         from motion_backend.rendering.depth_buffer import draw_body
 
-        best = near.astype(np.float32)
+        best, nearest = near.astype(np.float32), np.full(near.shape, -1, dtype=np.int32)
         drawn = camera.project(camera.view(points.astype(np.float64)), self.size)
         if drawn[:, 2].min() > 0:
-            draw_body(drawn, self.faces, np.full(best.shape, -1, dtype=np.int32), best)
-        return best
+            draw_body(drawn, self.faces, nearest, best)
+        return best, nearest
+
+    def _legs_share(self, near: Real, camera: Camera) -> float:
+        """The share of the pictures that legs fill, in the mean."""
+        legs = np.append(self.legs[self.faces].all(axis=1), False)
+        return float(np.mean([legs[self._with_body(near, points, camera)[1]].mean() for points in self.vertices]))
 
     def shown(self, scene: Sequence[Solid], camera: Camera) -> float:
         """The share of frames in which enough of the body and its part is seen; less where what is much nearer fills
-        the picture."""
+        the picture, or legs that of a face."""
         near = self.near(scene, camera)
         seen = (self._shares(near, camera) >= ASKED[self.subject]).all(axis=1)
         before = float((near > 1.0 / (MUCH * np.linalg.norm(np.subtract(camera.eye, camera.target)))).mean())
+        if self.subject is Subject.FACE:
+            before += self._legs_share(near, camera)
         return float(np.mean(seen)) - max(before - CROWDED, 0.0)
 
     @staticmethod

@@ -219,7 +219,7 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     if need is None:
         goals = [piece for place in _BROUGHT_TO.findall(clause.text) for piece in pieces_in(place)]
         pieces = [piece for piece in goals or named if furniture.affordances(piece)]
-        return Deed(found, skill, tuple(pieces), bool(pieces))
+        return Deed(found, skill, tuple(pieces or found.at), bool(pieces))
     if skill is Skill.TOUCH:
         return _touched(clause, about, found, named)
     fitting = [piece for piece in named if affords(piece, need)]
@@ -394,24 +394,31 @@ def said_row(clause: Clause) -> DeedRow | None:
     return found[1] if found else None
 
 
-def _said(clause: Clause) -> tuple[int, DeedRow] | None:
+def _said(clause: Clause, gestures: bool = True) -> tuple[int, DeedRow] | None:
     """The same, with how many words its saying has."""
-    ways = deed_table().ways
+    table = deed_table()
     does = bool(clause.verb) or clause.text.split(" ", 1)[0].endswith("ing")  # "pacing", but not "wrapped in a blanket"
     limbs = lemma_of(head_of(clause.subject)) in theme_words()["body"]  # "one leg stretched before him"
     for lemmas in readings(clause):
-        for pattern, row in deed_table().gestures.get("".join(lemmas[:1]), ()) if does and not limbs else ():
+        first = "".join(lemmas[:1])
+        for pattern, row in table.gestures.get(first, ()) if gestures and does and not limbs else ():
             if _fits(pattern, lemmas) and not says(row.unless, lemmas):
                 return len(lemmas), row
         fitting = [
             (_words_in(pattern), row)
-            for first in ("".join(lemmas[:1]) if does else "", "")
-            for pattern, row in ways.get(first, ())
+            for word in (first if does else "", "")
+            for pattern, row in table.ways.get(word, ())
             if _fits(pattern, lemmas)
         ]
         if fitting:
             return max(fitting, key=lambda one: one[0])
     return None
+
+
+def without_gestures(clause: Clause) -> DeedRow | None:
+    """The row of a clause's words where no gesture is looked for."""
+    found = _said(clause, gestures=False)
+    return found[1] if found else None
 
 
 def _words_in(pattern: Pattern) -> int:

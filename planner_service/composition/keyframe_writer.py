@@ -254,7 +254,7 @@ class KeyframeWriter:
             case Skill.LOCO if resting is not None and goes_on(read, deed):
                 self.body.show(index)
             case Skill.LOCO if deed.row.seated and resting is not None and resting.skill is Skill.SITDOWN:
-                self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
+                self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
             case Skill.LOCO if deed.row.lying and lies(resting) and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case Skill.LOCO if deed.row.seated and lies(resting) and not deed.named:

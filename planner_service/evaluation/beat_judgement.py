@@ -169,7 +169,7 @@ def in_order(fits: Sequence[Sequence[bool]]) -> frozenset[int]:
             column = next((place for place in range(first, len(columns)) if columns[place]), None)
             if column is not None:
                 others = [found[column]] if column in found else []
-                found[column] = min((*taken, row), *others, key=lambda rows: (-len(rows), rows))
+                found[column] = min([(*taken, row), *others], key=lambda rows: (-len(rows), rows))
         best = found
     most = min(best.values(), key=lambda rows: (-len(rows), rows))
     return frozenset(most)

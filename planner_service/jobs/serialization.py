@@ -62,7 +62,8 @@ def action_from_dict(row: Json) -> Action:
     """The inverse of `action_to_dict`."""
     spot = spot_from_dict(row["spot"])
     known = {field.name for field in fields(Action)}
-    plain = {name: tuple(value) if isinstance(value, list) else value for name, value in row.items() if name in known}
+    told = {name: value for name, value in row.items() if name in known}
+    plain: Json = {name: tuple(value) if isinstance(value, list) else value for name, value in told.items()}
     return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"]), "spot": spot})
 
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
+
+import numpy as np
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.formats.mp4 import write_mp4
 from motion_backend.rendering.film_frames import film_frames
 from motion_backend.rendering.film_picture import lay_words
-from motion_backend.rendering.film_shots import film_shots
+from motion_backend.rendering.film_shots import FilmShot, film_shots
+from motion_backend.rendering.title_place import PLACES, Place, title_place
 from planner_service.output.film_letters import lettered, titled
 from planner_service.output.film_pages import subtitles
 from scene_graphs.errors import UserError
@@ -27,10 +31,12 @@ if TYPE_CHECKING:
 SIZE: Final = (1280, 720)
 """Pixels across and down."""
 TITLE_SECONDS: Final = 2.5
+FIRST_WORDS: Final = 1.0
+"""Seconds after which told words may begin under it."""
 TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
 """Of the picture's height."""
-WORDS_END, TITLE_END = 0.94, 0.92
-"""Where in the picture's height they end: a title in the middle would hide who is in the first shot."""
+WORDS_END: Final = 0.94
+"""Where in the picture's height told words end."""
 SHADE: Final = 0.62
 """How much of a picture's light stays under its words."""
 
@@ -73,7 +79,8 @@ def write_film(
     shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1], filmed.role)
     title = titled(told.title, size, TITLE_HEIGHT)
     untitled = round(TITLE_SECONDS * motion.fps) if title is not None else 0
-    lines = subtitles(told, filmed.segments, motion.fps, untitled)
+    place, shots = (PLACES[0], shots) if title is None else _placed(title.shape, size, shots, motion, untitled)
+    lines = subtitles(told, filmed.segments, motion.fps, round(FIRST_WORDS * motion.fps) if untitled else 0)
     words = [(line, lettered(line.lines, size, TEXT_HEIGHT)) for line in lines]
 
     def dressed(frame: int, picture: Planes) -> Planes:
@@ -81,7 +88,7 @@ def write_film(
             if letters is not None and line.start <= frame < line.stop:
                 lay_words(picture, letters, WORDS_END, SHADE)
         if title is not None and frame < untitled:
-            lay_words(picture, title, TITLE_END, SHADE)
+            lay_words(picture, title, place.bottom, SHADE, place.across)
         return picture
 
     def counted() -> Iterator[Planes]:
@@ -90,3 +97,14 @@ def write_film(
             yield picture
 
     return write_mp4(counted(), path, motion.fps)
+
+
+def _placed(
+    words: tuple[int, ...], size: tuple[int, int], shots: Iterator[FilmShot], motion: Motion, frames: int
+) -> tuple[Place, Iterator[FilmShot]]:
+    """Where a title (height, width) stands for its frames, and all shots again."""
+    first: list[FilmShot] = []
+    while not first or first[-1].stop < min(frames, len(motion)):
+        first.append(next(shots))
+    joints = motion.part(0, min(frames, len(motion))).joint_positions().astype(np.float64)
+    return title_place((words[0], words[1]), size, first, joints), chain(first, shots)

@@ -24,6 +24,8 @@ DONE: Final = 2.5
 """Seconds after which what a keyframe does is being done, at most: until then one sits down to it."""
 SHORTEST: Final = 1.5
 """Seconds between two that follow each other."""
+QUICK: Final = 0.7
+"""Share of their reading time that words are shown at least, though what they tell is over."""
 SENTENCE: Final = re.compile(r"[^.!?…]+[.!?…]*[\"”’')\]]*\s*")
 JOINT: Final = re.compile(r"(?<=[,;:–—])\s+|\s+(?=(?:and|but|then|so|while|until|before|after|because|when)\b)")
 """Where a sentence may be parted: what stands before and after can be read by itself."""
@@ -69,16 +71,23 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Line:
-    """A piece, the frame where what it tells begins, that where the last of it is being done, and its pages."""
+    """A piece, the frame where what it tells begins, that where the last of it is being done, that where it is over,
+    and its pages."""
 
     piece: _Piece
     begins: int
     aim: int
+    over: int
     pages: tuple[_Page, ...]
 
     def start(self, fps: int) -> int:
-        """The frame at which half of its reading time is left until it is being done."""
-        return max(self.begins, self.aim - round(sum(map(_read, self.pages)) / 2 * fps))
+        """The frame at which half of its reading time is left until it is being done, all until it is over."""
+        read = round(sum(map(_read, self.pages)) * fps)
+        return max(self.begins, min(self.aim - read // 2, self.over - read))
+
+    def stop(self, fps: int) -> int:
+        """The frame at which what it tells is over, as soon as its words could be read quickly."""
+        return max(self.over, self.start(fps) + round(QUICK * sum(map(_read, self.pages)) * fps))
 
 
 @dataclass(frozen=True)
@@ -90,7 +99,8 @@ class _Page:
 
 
 def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled: int = 0) -> list[Subtitle]:
-    """The told words, each half of its reading time before its last keyframe is being done, none before frame `titled`.
+    """The told words, each half of its reading time before its last keyframe is being done, and no longer than until
+    that is over if they can be read by then; none before frame `titled`.
 
     What tells no keyframe is shown with what follows, and what is done at nearly the same time together. What is told
     and not seen is slanted; whole sentences of it that would stand alone are left out. `segments` are frames of
@@ -99,7 +109,8 @@ def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled:
     lines = _lines(told, segments, fps, titled)
     starts = [line.start(fps) for line in lines]
     shown: list[Subtitle] = []
-    for line, start, stop in zip(lines, starts, [*starts[1:], *(stop for _, stop in segments[-1:])], strict=False):
+    for line, start, latest in zip(lines, starts, [*starts[1:], *(stop for _, stop in segments[-1:])], strict=False):
+        stop = min(latest, line.stop(fps))
         letters = list(accumulate((len(page.text) for page in line.pages), initial=0))
         cuts = [start + round((stop - start) * part / max(letters[-1], 1)) for part in letters]
         shown += [
@@ -116,7 +127,7 @@ def _lines(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled: in
     def line_of(piece: _Piece) -> _Line:
         begins, (last, end) = max(segments[min(piece.keyframes)][0], titled), segments[max(piece.keyframes)]
         aim = last + min((end - last) // 2, round(DONE * fps))
-        return _Line(piece, begins, aim, tuple(_pages(told, piece)))
+        return _Line(piece, begins, aim, end, tuple(_pages(told, piece)))
 
     lines: list[_Line] = []
     for piece in _in_time(_with_following(_pieces(told))):

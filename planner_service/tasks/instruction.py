@@ -11,7 +11,7 @@ from typing import Final, Literal, cast
 
 from motion_backend.motion import Skill
 from motion_backend.planners.markov_planner import Hand
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, says
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, says, without_gestures
 from planner_service.scripts.script_repair import NO_WAY_TO_GO
 from planner_service.tasks.household import household, in_hand, is_one, told_by
 from planner_service.tasks.task_plan import MAX_ACTION_LENGTH, TaskError
@@ -232,7 +232,7 @@ def _addressed(text: str) -> str:
 def _imperatives() -> frozenset[str]:
     """Base forms that a deed's words may begin with."""
     never = (way.split()[0].split("|") for way in chain.from_iterable(household().never.values()))
-    known = {*deed_table().ways, *chain.from_iterable(never)}
+    known = {*deed_table().ways, *deed_table().gestures, *chain.from_iterable(never)}
     return frozenset(word for word in known if lemma_of(word) == word)
 
 
@@ -267,8 +267,11 @@ def _order(verb: str, rest: str, before: Sequence[Order]) -> Order | None:
     rest = " ".join(_HAND.sub("", rest).split())
     lemmas = (verb, *(lemma_of(token.text) for token in tokens_of(rest) if token.text[:1].isalnum()))
     spoken = next((one for one in reversed(before) if one.thing), None)
-    deed = deed_of(Clause(f"{verb} {rest}", "", verb, lemmas), spoken.thing if spoken else "")
-    if deed is None or deed.row not in deed_table().deed:
+    clause, about = Clause(f"{verb} {rest}", "", verb, lemmas), spoken.thing if spoken else ""
+    deed = deed_of(clause, about)
+    if deed is not None and deed.is_gesture and (row := without_gestures(clause)):
+        deed = deed_of(clause, about, row)  # what is worked with is fetched, which nobody does for a gesture
+    if deed is None or not (deed.is_gesture or deed.row in deed_table().deed):
         fixed = next((lemma for lemma in lemmas if is_fixed(lemma)), "")
         nowhere = f"“{fixed}” is no furniture with a surface that a hand could be laid on" if fixed else ""
         if not (why := told_by(household().never, lemmas) or nowhere):

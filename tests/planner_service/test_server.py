@@ -8,9 +8,21 @@ import pytest
 from for_each import for_each
 from service_app import parts_on
 
-from planner_service.server import environment
+from motion_backend.body import character_mesh
+from planner_service.server import environment, warm_up
 from planner_service.settings import Settings, SettingsError, read_settings
 from planner_service.store.database import database_url
+from planner_service.themes import lexicon
+
+
+def test_words_are_known_and_a_body_is_built_before_the_first_visitor_asks() -> None:
+    lexicon.kinds_of.cache_clear()
+    lexicon._inflected.cache_clear()
+    character_mesh._reference_mesh.cache_clear()
+    warm_up()
+    assert lexicon.kinds_of.cache_info().currsize > 0, "what a word may be: one table"
+    assert lexicon._inflected.cache_info().currsize > 0, "and its forms: another"
+    assert character_mesh._reference_mesh.cache_info().currsize == 1
 
 
 @pytest.mark.parametrize("name", ["a b", "größe", "what?now", "100%20", "a#b", "a&b=c;d"])

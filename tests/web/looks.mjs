@@ -1,13 +1,38 @@
-/** The page at three sizes, light and dark: nothing sticks out, nothing that axe calls serious, and it stands still if asked to. */
+/** The page at three sizes, light and dark: nothing sticks out, nothing that axe calls serious, and it stands still if asked to; the script as a
+ * form at the sizes of laptops and of a telephone. */
 
 import { complaints, overhang, scene, until } from "./browser.mjs";
 
 const SIZES = [[390, 844], [820, 1180], [1440, 900]];
 
+const FORM_SIZES = [[1200, 800], [1366, 768], [1440, 900], [390, 844]];
+
 async function visit(page, address, look) {
   await page.goto("about:blank");
   await page.emulateMedia({ colorScheme: look });
   await page.goto(address);
+}
+
+/** How the form is laid out where one looks at it: boxes of the window, CSS pixels. */
+async function form(page) {
+  await page.getByRole("button", { name: "Change the script" }).click();
+  await page.locator(".draft").first().waitFor();
+  const told = [];
+  for (const [width, height] of FORM_SIZES) {
+    await page.setViewportSize({ width, height });
+    await page.evaluate(() => window.scrollTo(0, 0));
+    // Under a film on a telephone one goes on to the form.
+    if (width < 600) await page.locator(".editor-head").evaluate((head) => head.scrollIntoView());
+    await page.waitForTimeout(150);
+    const boxes = await page.evaluate(() => {
+      const box = (element) => (({ left, top, right, bottom }) => ({ left, top, right, bottom }))(element.getBoundingClientRect());
+      const all = (selector) => [...document.querySelectorAll(selector)].filter((element) => element.offsetParent).map(box);
+      const pairs = [...document.querySelectorAll(".editor label[for^=take]")].map((label) => ({ name: label.textContent, label: box(label), field: box(document.getElementById(label.htmlFor)) }));
+      return { pairs, rows: all(".draft"), list: box(document.querySelector(".drafts")), play: box(document.querySelector(".editor-foot .primary")), foot: box(document.querySelector(".editor-foot")), controls: all(".controls > *") };
+    });
+    told.push({ width, height, sideways: await overhang(page), ...boxes });
+  }
+  return told;
 }
 
 await scene(async (page, id) => {
@@ -41,5 +66,5 @@ await scene(async (page, id) => {
     camera: window.sims.state().camera,
     running: document.getAnimations().filter((animation) => animation.playState === "running" && animation.effect.getComputedTiming().duration > 10).length,
   }));
-  return { shown, still: { ...still, early } };
+  return { shown, still: { ...still, early }, form: await form(page) };
 });

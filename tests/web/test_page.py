@@ -224,10 +224,16 @@ def test_stories_survive_a_reload_and_the_gallery_has_them_all(
     assert f"#/stories/{story['id']}" in told["links"]
 
 
+@pytest.fixture(scope="module")
+def looked(visit: Visit, story: dict[str, Any]) -> dict[str, Any]:
+    """The story's page at many sizes, and the script as a form."""
+    return visit("looks", story["id"])
+
+
 def test_it_is_fine_on_every_screen_by_day_and_by_night_and_for_those_who_want_it_still(
-    visit: Visit, story: dict[str, Any]
+    looked: dict[str, Any],
 ) -> None:
-    told = visit("looks", story["id"])
+    told = looked
     assert len(told["shown"]) == 12
     for shown in told["shown"]:
         assert shown["overhang"] <= 0, shown
@@ -237,6 +243,26 @@ def test_it_is_fine_on_every_screen_by_day_and_by_night_and_for_those_who_want_i
     assert still["time"] == still["early"]
     assert still["camera"]["mode"] == "orbit"
     assert still["running"] == 0, "nothing moves that was not asked to"
+
+
+def test_the_script_is_changed_in_sight_of_what_belongs_together(looked: dict[str, Any]) -> None:
+    assert len(looked["form"]) == 4
+    for laid in looked["form"]:
+        size = laid["width"], laid["height"]
+        assert laid["sideways"] <= 0, size
+        assert [pair["name"] for pair in laid["pairs"]] == ["Seed", "Moved by", "Played in"]
+        for pair in laid["pairs"]:
+            label, field = pair["label"], pair["field"]
+            assert field["top"] < (label["top"] + label["bottom"]) / 2 < field["bottom"], (size, pair["name"])
+            assert 0 <= field["left"] - label["right"] < 16, "a label stands at its field"
+        play, foot, shown = laid["play"], laid["foot"], laid["list"]
+        assert play["top"] >= 0, size
+        assert play["bottom"] <= laid["height"], size
+        low = min(shown["bottom"], foot["top"])
+        seen = [row for row in laid["rows"] if row["top"] >= max(shown["top"], 0) - 1 and row["bottom"] <= low + 1]
+        assert len(seen) >= 5, (size, len(laid["rows"]))
+        lines = {round((one["top"] + one["bottom"]) / 2) for one in laid["controls"]}
+        assert max(lines) - min(lines) <= 2 or laid["width"] < 600, "the film's buttons are one row"
 
 
 def test_what_goes_wrong_is_said_where_it_belongs(visit: Visit, client: httpx.Client) -> None:

@@ -10,10 +10,11 @@ import { MiniMap } from "./minimap";
 import { Player } from "./player";
 import { emptyPose, jointPositions, type Point3 } from "./pose";
 import { Reel } from "./reel";
+import { settledAt } from "./settling";
 import type { Stage } from "./stage";
 import { Timeline } from "./timeline";
 import { keyframeAt } from "./timing";
-import { sideOf } from "./words";
+import { BEGUN_WORDS, sideOf } from "./words";
 
 const FPS = 30;
 /** From where each skill is seen best, radians from straight ahead: what is touched stands in front of the body. */
@@ -45,6 +46,9 @@ export class Film {
   #opened = false;
   #last = 0;
   #drawn = -1;
+  /** The frame from which on what a keyframe is about is seen, by its index. */
+  readonly #settled = new Map<number, number>();
+  #seen = false;
   #visible = true;
   /** The keyframe that it begins with, until it has begun. */
   #from: number | null;
@@ -83,6 +87,7 @@ export class Film {
     this.#story = this.keyframe = null;
     this.#opened = false;
     this.#drawn = -1;
+    this.#settled.clear();
     this.notice();
     this.#wait.hidden = false;
     this.#holder.focus({ preventScroll: true });
@@ -286,6 +291,8 @@ export class Film {
     track.sample(this.player.time, this.#pose);
     this.#stage?.pose(this.#pose);
     this.#map.tick(this.#pose, track, frame);
+    const seen = keyframe !== null && frame >= this.#settledAt(keyframe, keyframes);
+    if (seen !== this.#seen || keyframe !== this.keyframe) this.#showCard(keyframe === null ? undefined : keyframes[keyframe], seen);
     if (keyframe !== this.keyframe) this.#showKeyframe(keyframe, keyframes);
   }
 
@@ -294,14 +301,26 @@ export class Film {
     return story !== null && (story.motion.complete || !["queued", "running"].includes(story.state));
   }
 
+  #settledAt(index: number, keyframes: readonly Keyframe[]): number {
+    const { skill, start, end } = keyframes[index]!;
+    if (start === null || end === null) return Infinity;
+    const known = this.#settled.get(index) ?? settledAt(this.reel.track, skill, start, end);
+    if (known < Infinity) this.#settled.set(index, known);
+    return known;
+  }
+
+  /** What is being done; how it is done is not told before it is seen. */
+  #showCard(keyframe: Keyframe | undefined, seen: boolean): void {
+    this.#seen = seen;
+    this.#subtitle.hidden = !keyframe;
+    if (!keyframe) return;
+    this.#subtitle.dataset["emotion"] = keyframe.mood;
+    fill(this.#subtitle, h("small", {}, keyframe.emotion), h("span", {}, seen ? keyframe.caption : BEGUN_WORDS[keyframe.skill]));
+  }
+
   #showKeyframe(index: number | null, keyframes: readonly Keyframe[]): void {
     this.keyframe = index;
     const keyframe = index === null ? undefined : keyframes[index];
-    this.#subtitle.hidden = !keyframe;
-    if (keyframe) {
-      this.#subtitle.dataset["emotion"] = keyframe.mood;
-      fill(this.#subtitle, h("small", {}, keyframe.emotion), h("span", {}, keyframe.caption));
-    }
     if (keyframe && this.#stage) {
       this.#stage.cameraMan.aside = ASIDE[keyframe.skill];
       this.#stage.cameraMan.side = sideOf(keyframe.caption);

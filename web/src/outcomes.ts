@@ -49,7 +49,7 @@ export function legend(beats: readonly Beat[], figures: readonly KeyframeFigures
   if (beats.some((beat) => beat.acted && lacking(beat))) used.add("missing");
   if ([...used].every((outcome) => outcome === "acted")) return null;
   const order = (Object.keys(OUTCOMES) as Outcome[]).filter((outcome) => used.has(outcome));
-  return h("dl", { class: "legend", "aria-label": "What these words mean" }, ...order.flatMap((outcome) => [h("dt", {}, badge(outcome)), h("dd", {}, OUTCOMES[outcome].meaning)]));
+  return h("dl", { class: "outcome-legend", "aria-label": "What these words mean" }, ...order.flatMap((outcome) => [h("dt", {}, badge(outcome)), h("dd", {}, OUTCOMES[outcome].meaning)]));
 }
 
 /** The moments that show something else than was asked for: what stands for a beat, and what is done in another way. */

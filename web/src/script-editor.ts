@@ -56,14 +56,14 @@ export class ScriptEditor {
     this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend, rooms: "" };
     this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", oninput: () => (this.#play.disabled = this.#from({ ...this.#now, seed: this.#seed.value }) === null), onchange: () => this.#stage({ seed: this.#seed.value }) });
     this.#backend = h("select", { id: "take-backend", onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.backend)));
-    this.#rooms = h("input", { id: "take-home", class: "home", list: "take-rooms", placeholder: "the home it has", autocomplete: "off", spellcheck: false, onfocus: () => void this.#name(), oninput: () => (this.#play.disabled = false), onchange: () => this.#stage({ rooms: this.#rooms.value.trim() }) });
+    this.#rooms = h("input", { id: "take-home", class: "home", list: "take-rooms", placeholder: "its own home", autocomplete: "off", spellcheck: false, onfocus: () => void this.#name(), oninput: () => (this.#play.disabled = false), onchange: () => this.#stage({ rooms: this.#rooms.value.trim() }) });
     const upload = new Upload((ids) => this.#stage({ rooms: ids.join(", ") }));
     const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Leave it");
     fill(
       this.element,
       h("div", { class: "row editor-head" }, h("h2", {}, "Change the script"), leave),
       this.#list,
-      h("div", { class: "staging" }, h("label", { for: "take-seed" }, "Seed"), this.#seed, h("label", { for: "take-backend" }, "Moved by"), this.#backend, h("label", { for: "take-home" }, "Played in"), this.#rooms, this.#known),
+      h("div", { class: "staging" }, staged("Seed", this.#seed), staged("Moved by", this.#backend), staged("Played in", this.#rooms, this.#known)),
       upload.element,
       h("div", { class: "editor-foot" }, this.#problem, h("div", { class: "row" }, this.#play, this.#undo)),
     );
@@ -151,8 +151,8 @@ export class ScriptEditor {
         { class: "draft-fields" },
         choose("skill", "what is done", SKILLS.map((skill) => [skill, capital(SKILL_WORDS[skill])] as const), draft.skill, (value) => this.#reskill(at, value as Skill)),
         choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
-        choose("caption", "how", this.#words.captions(draft.skill).map((caption) => [caption, caption] as const), draft.caption, (caption) => this.#do(changed(script, at, { caption }), `${name}: ${caption}`)),
         choose("emotion", "in which mood", EMOTIONS.map((emotion) => [emotion, emotion] as const), draft.emotion, (emotion) => this.#do(changed(script, at, { emotion }), `${name}: ${emotion}`)),
+        choose("caption", "how", this.#words.captions(draft.skill).map((caption) => [caption, caption] as const), draft.caption, (caption) => this.#do(changed(script, at, { caption }), `${name}: ${caption}`)),
         h(
           "div",
           { class: "draft-moves" },
@@ -191,7 +191,7 @@ export class ScriptEditor {
   /** Where a moment may be: the objects that serve for what is done, and the floor for all but touching. */
   #places(draft: Draft): (readonly [string, string])[] {
     const needs = this.#words.needs(draft.skill);
-    const serve = this.#things.filter(({ id, affords }) => id === draft.object_id || needs === null || affords.includes(needs));
+    const serve = this.#things.filter(({ id, affords, near }) => id === draft.object_id || (needs === null ? near : affords.includes(needs)));
     const several = new Set(this.#things.map(({ room }) => room)).size > 1;
     const named = serve.map(({ id, name, room }) => [id, several ? `${name}, ${room}` : name] as const);
     return needs === "touch" ? named : [[FLOOR, "the floor"], ...named];
@@ -256,6 +256,11 @@ export class ScriptEditor {
     first?.focus();
     announce(error.detail);
   }
+}
+
+/** What a take is made with, and its name beside it. */
+function staged(name: string, control: HTMLElement, ...more: HTMLElement[]): HTMLElement {
+  return h("div", { class: "staged" }, h("label", { for: control.id }, name), control, ...more);
 }
 
 /** Makes a post that is tried again the same post. */

@@ -22,7 +22,12 @@ export interface Thing {
   /** The room it stands in: "living room". */
   readonly room: string;
   readonly affords: readonly string[];
+  /** Whether one can walk up to it: what hangs on the ceiling or high on a wall is over other things. */
+  readonly near: boolean;
 }
+
+/** Metres above the floor under which what one walks to begins. */
+const REACH = 1.1;
 
 export class Vocabulary {
   readonly backends: readonly Backend[];
@@ -72,9 +77,9 @@ export class Vocabulary {
 
   /** All that can be named in a home, room after room. */
   things(home: Home): Thing[] {
-    const all = home.rooms.flatMap(({ layout }, place) => layout.objects.map(({ id, category }) => ({ id: `${place}/${id}`, category, room: plain(layout.room_type) })));
+    const all = home.rooms.flatMap(({ layout }, place) => layout.objects.map(({ id, category, position }) => ({ id: `${place}/${id}`, category, room: plain(layout.room_type), near: position[1] < REACH })));
     const names = namesIn(all);
-    return all.map(({ id, category, room }) => ({ id, name: names.get(id) ?? plain(category), room, affords: this.#affords.get(category) ?? [] }));
+    return all.map(({ id, category, room, near }) => ({ id, name: names.get(id) ?? plain(category), room, near, affords: this.#affords.get(category) ?? [] }));
   }
 }
 

@@ -33,6 +33,16 @@ export const SKILL_WORDS: Readonly<Record<Skill, string>> = {
   touch: "touch",
 };
 
+/** What a body sets out to do, before it is seen how. */
+export const BEGUN_WORDS: Readonly<Record<Skill, string>> = {
+  loco: "sets off",
+  sitdown: "sits down",
+  standup: "stands up",
+  getup: "gets up",
+  liedown: "lies down",
+  touch: "reaches out",
+};
+
 /** "multi_seat_sofa_1" as "multi seat sofa". */
 export function plain(name: string): string {
   return name.replace(/^\d+\//, "").replace(/_\d+$/, "").replaceAll("_", " ");

@@ -201,12 +201,7 @@ LACKED = {
     "folded_over": "lap to fold hands in",
 } | dict.fromkeys(ON_TABLE, "table before the seat")
 """What is not there, of what hands were to be on, in words."""
-WHERE = {
-    "thighs": "on its thigh",
-    "knees": "on its knee",
-    "lap": "in the lap",
-    "own_shin": "on its shin",
-}
+WHERE = {"thighs": "on its thigh", "knees": "on its knee", "lap": "in the lap", "own_shin": "on its shin"}
 """Where a hand is instead, in words."""
 ON_THE_FLOOR = {
     "thighs": "knees",
@@ -233,7 +228,7 @@ def _on_the_floor(style: Seated) -> Seated:
     legs = "crossed" if busy and style.legs in ("rest", "together") else style.legs
     shins = "own_shin" in (left, right)
     # Between trunk and knees there is little room for arms.
-    recline = max(style.recline, CLEAR_OF_KNEES if "crossed" in (left, right) else -CLEAR_OF_LEGS)
+    recline = max(style.recline, CLEAR_OF_KNEES if {"crossed", "hugging"} & {left, right} else -CLEAR_OF_LEGS)
     return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 

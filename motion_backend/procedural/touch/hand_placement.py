@@ -42,6 +42,8 @@ FOREARM: Final = np.array([[0.0, 0.042], [0.6, 0.034]])
 """Shares of a forearm from the elbow, and how thick it is there (metres at 1.70 m)."""
 TURNS, DEEPER = 31, 0.016
 """So many turns of a grip are tried, and how much deeper a palm may be in the surface then (metres)."""
+DEEPEST, SOON = 0.03, 4
+"""No palm is in a surface deeper than this (metres): so many frames before it would be a hand has come off it."""
 
 
 def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleton, row: HandPlacement) -> Laid:
@@ -74,6 +76,20 @@ def gripped(held: Pose, index: int, angle: Array, normal: Array, row: Rotate) ->
     palms[:, index] = rotations.compose(turn, palms[:, index])
     elbows[:, index] += angle[:, None] * np.array([row.elbow_left_ratio, row.elbow_up_ratio * side, 0.0])
     return replace(held, reach=reach, palms=palms, elbows=elbows)
+
+
+def lifted_off(whole: Pose, laid: Laid, skeleton: Skeleton) -> Pose:
+    """T frames of hands on a surface, which come off it where their fingers would be deep in it: on its way over a
+    thing a hand gets to where its wrist cannot bend as far as it would have to."""
+    from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+
+    reach, frame = whole.reach.copy(), chest_frame(whole, skeleton)
+    for index, wrist, _ in laid.hands:
+        skin, _, _ = _palm_skin(Arm.of(whole, skeleton, index, frame), skeleton.scale)
+        deep = -((skin - wrist) @ laid.normal + HAND_REST).min(axis=1) - DEEPEST
+        over = maximum_filter1d(np.clip(deep, 0.0, None) * whole.reaching[:, index], 2 * SOON + 1, mode="nearest")
+        reach[:, index] += gaussian_filter1d(over, SOON / 2, mode="nearest")[:, None] * laid.normal
+    return replace(whole, reach=reach)
 
 
 def turns_of_grip(there: Pose, laid: Laid, skeleton: Skeleton, row: Rotate) -> tuple[float, float]:

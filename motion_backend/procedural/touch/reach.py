@@ -22,7 +22,7 @@ from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.hand_placement import Depth, placed, turns_of_grip
+from motion_backend.procedural.touch.hand_placement import Depth, lifted_off, placed, turns_of_grip
 from motion_backend.procedural.touch.kneel import down_on_knees, prone
 from motion_backend.procedural.touch.reach_keys import (
     Approach,
@@ -106,9 +106,11 @@ def touch(
     times = manner.hold, tempo, pace, step_s, manner.doing, max(looks, 1 / FPS)
     turns = turns_of_grip(reached, laid, skeleton, keys.held.rotate) if manner.doing == "rotate" else (0.0, 0.0)
     way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
-    whole = deed(way, keys)
+    whole = lifted_off(deed(way, keys), laid, skeleton)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
-    return settle_from(start, replace(whole, knees=knees), FPS, seconds=row.settle_s)
+    # A body on its way up takes the hand along before the arm is straight.
+    whole = replace(whole, knees=knees, reaching=whole.reaching**row.goes_along_power)
+    return settle_from(start, whole, FPS, seconds=row.settle_s)
 
 
 def _feet(laid: Laid, manner: Manner, skeleton: Skeleton, keys: ReachTable) -> tuple[int, ...]:

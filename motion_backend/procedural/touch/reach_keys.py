@@ -50,6 +50,8 @@ class Approach:
     """How far feet tip against what the ankles' rise asks for."""
     tiptoe_max_share: float
     """Of the foot's length, that ankles rise."""
+    goes_along_power: float
+    """Of the share of its way to the thing: how much sooner than that a hand goes with the body again."""
 
 
 @table

@@ -5,6 +5,8 @@ The numbers are in data/gait/arm_swing.toml.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from motion_backend import rotations
@@ -12,11 +14,14 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays, arm_poses
 from motion_backend.procedural.pose import smooth
 from motion_backend.procedural.walk.footsteps import Steps
+from motion_backend.procedural.walk.root_path import Route
 from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import Walk
 from motion_backend.rotations import Array
+from motion_backend.skeleton import ARM_LENGTH
 from scene_graphs.data_tables import read_table, table
 
+Depth = Callable[[Array], Array]
 CARRIED = "carry"
 """The arm pose of a hand that holds something: it stays as it is where something is begun."""
 
@@ -82,7 +87,15 @@ class ArmSpread:
     after_s: float
     within_s: float
     down_s: float
-    """They come down again over the last of the way."""
+    """They come down again over the last of the way,"""
+    comes_down_s: float
+    """and so long before they would be nearer to something than"""
+    room_m: float
+    shoulder_m: float
+    """from a shoulder so high, at 1.70 m, and"""
+    shoulder_aside_m: float
+    looked_at_arms: tuple[float, ...]
+    """at these shares of the way out to the wrist."""
 
 
 @table
@@ -181,9 +194,13 @@ def _held(index: int, wrist: Array, spread: Array) -> Array:
     return np.asarray(rotations.normalize(between) * length[:, None])
 
 
-def arm_spread(frames: int, style: Walk, stride: Stride | None = None) -> Array:
-    """Share of its pose that each arm is in: open arms wait until the body is under way, and all but those that carry
-    something come down where something is begun. (T, 2)."""
+def arm_spread(route: Route, style: Walk, scale: float, depth: Depth, stride: Stride | None = None) -> Array:
+    """Share of its pose that each arm is in: open arms wait until the body is under way and come down where they would
+    be in something, and all but those that carry something come down where something is begun. (T, 2).
+
+    `depth` says how deep points (N, 3) are in what is solid.
+    """
+    frames = len(route.heading)
     row, at = arm_table().spread, np.arange(frames) / FPS
     spread = np.ones((frames, 2))
     for index, arms in enumerate(style.bearing.arms):
@@ -191,9 +208,28 @@ def arm_spread(frames: int, style: Walk, stride: Stride | None = None) -> Array:
         if takes_room:
             begin = 0.0 if stride is None else float(stride.spread[index])
             spread[:, index] = begin + (1 - begin) * smooth((at - row.after_s * (stride is None)) / row.within_s)
+            lacks = 1 - _free(route, index, arms, scale, depth)
+            spread[:, index] *= 1 - lacks * (1.0 if stride is None else smooth(at / row.comes_down_s))
         if takes_room or (style.release and arms != CARRIED):
             spread[:, index] *= smooth((at[-1] - at) / row.down_s)
     return spread
+
+
+def _free(route: Route, index: int, arms: str, scale: float, depth: Depth) -> Array:
+    """1 where a hand held out in an arm pose keeps off what is solid, 0 where it would not, in time. (T,)."""
+    from scipy.ndimage import gaussian_filter1d, minimum_filter1d
+
+    row, side = arm_table().spread, 1.0 if index == 0 else -1.0
+    wrist = np.asarray(arm_poses()[arms].wrist_arm_lengths) * [side, 1.0, 1.0]
+    out = np.array([side * row.shoulder_aside_m, row.shoulder_m, 0.0]) + ARM_LENGTH * np.outer(
+        row.looked_at_arms, wrist
+    )
+    turned = rotations.rotate(rotations.yaw_to_quat(route.heading)[:, None], scale * out)
+    turned[..., [0, 2]] += route.position[:, None]
+    deep = depth(turned.reshape(-1, 3)).reshape(len(turned), -1).max(axis=1)
+    early = round(row.comes_down_s * FPS)
+    free = minimum_filter1d((deep < -row.room_m).astype(np.float64), 2 * early + 1, mode="nearest")
+    return np.asarray(gaussian_filter1d(free, early / 2, mode="nearest"))
 
 
 def _across(style: Walk, side: int, steps: Steps, wrist: Array) -> Array:

@@ -49,6 +49,10 @@ class Cadence:
     start_max_hz: float
     taken_up_steps: float
     """Who goes on from another walk comes to the steps of this one over so many."""
+    hurry_ratios: tuple[float, ...]
+    """And so much quicker at first, the least that leaves no foot farther behind than"""
+    left_behind_m: float
+    hurries_after_s: float
     standing_steps: float
     """What is left for standing still after the last step."""
     end_hz: float
@@ -61,11 +65,17 @@ def cadence() -> Cadence:
 
 
 def plan_phase(
-    route: Route, style: Walk, skeleton: Skeleton, fps: int, rng: np.random.Generator, stride: Stride | None = None
+    route: Route,
+    style: Walk,
+    skeleton: Skeleton,
+    fps: int,
+    rng: np.random.Generator,
+    stride: Stride | None = None,
+    hurry: float = 1.0,
 ) -> tuple[Route, Array]:
     """Cadence from speed and turning, then enough standing frames for both feet to come home.
 
-    The first frame of a body in its stride is the one it has already made.
+    The first frame of a body in its stride is the one it has already made; its next steps `hurry` so many times.
     """
     row, scale = cadence(), skeleton.scale
     turning = np.abs(np.gradient(route.heading)) * fps
@@ -92,7 +102,7 @@ def plan_phase(
         # A third of a step goes by before the first foot lifts: the weight shifts and the heel rises.
         phase, begun = np.cumsum(rate) / fps - LEAD, -1
     else:
-        rate = _taken_up(rate, np.maximum(turned, row.min_hz), route.speed, stride, fps)
+        rate = _taken_up(rate, np.maximum(turned, row.min_hz), route.speed, stride, (fps, hurry))
         phase, begun = stride.phase + (np.cumsum(rate) - rate[0]) / fps, stride.begun
     # Both feet step at least once, and a last step in flight comes down before the end.
     total = max(np.ceil(phase[-1] + 0.5), begun + 1.0 + BEATS) + max(0.0, -style.double / 2) + row.standing_steps
@@ -106,10 +116,11 @@ def plan_phase(
     return longer, np.concatenate([phase, tail])
 
 
-def _taken_up(rate: Array, slowest: Array, speed: Array, stride: Stride, fps: int) -> Array:
+def _taken_up(rate: Array, slowest: Array, speed: Array, stride: Stride, pace: tuple[int, float]) -> Array:
     """Steps a second (T,) of a walk that goes on from another: their length changes little by little, since feet that
     are on their way come down where the steps before had them to. No rate comes below `slowest` (T,)."""
-    row = cadence()
+    row, (fps, hurry) = cadence(), pace
     speed, share = np.maximum(speed, row.speed_min_mps), smooth(np.cumsum(rate) / fps / row.taken_up_steps)
     length = (1 - share) * stride.step_m + share * speed / rate
-    return np.maximum(speed / length, np.minimum(slowest, rate))
+    hurried = 1 + (hurry - 1) * smooth(np.arange(len(rate)) / fps / row.hurries_after_s) * (1 - share)
+    return np.asarray(hurried * np.maximum(speed / length, np.minimum(slowest, rate)))

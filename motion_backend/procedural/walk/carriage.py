@@ -13,6 +13,8 @@ class GaitWay:
     """Two walks of one style differ in speed by about this."""
     pace_spread_max_sigmas: float
     spin_rad_per_s: float
+    spin_mps: float
+    """and how fast it goes on meanwhile."""
     spin_eases_s: float
     """How much longer a spin takes."""
     stagger_aside_m: float

@@ -14,8 +14,8 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
-from motion_backend.procedural.walk.arm_swing import arm_spread, swing_arms
-from motion_backend.procedural.walk.cadence import plan_phase
+from motion_backend.procedural.walk.arm_swing import Depth, arm_spread, swing_arms
+from motion_backend.procedural.walk.cadence import cadence, plan_phase
 from motion_backend.procedural.walk.carriage import carriage
 from motion_backend.procedural.walk.footsteps import Room, Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
@@ -53,18 +53,21 @@ def walk_on(
     stride: Stride | None = None,
     cut_m: float | None = None,
     room: Room = lambda places: np.full(len(places), np.inf),
+    depth: Depth = lambda points: np.full(len(points), -np.inf),
 ) -> tuple[Pose, Stride | None, Pose | None]:
     """Walk as `walk` does, from a body in the `stride` that the last walk left it in, where there is one.
 
     With `cut_m` the path goes on after the walk is over, so many metres along it: the body does not stop there, and its
     stride is returned (`way_junction.through_way` joins two ways and says where). Without, it ends standing. Nobody
-    staggers beyond the `room` that there is.
+    staggers beyond the `room` that there is, nor holds arms out into what is solid, which points (N, 3) are so deep in.
     """
     fps, row = FPS, carriage().way
     luck = float(np.clip(rng.standard_normal(), -row.pace_spread_max_sigmas, row.pace_spread_max_sigmas))
     pace = 1 + row.pace_spread_share * luck
     style = replace(style.in_character(), release=end_yaw is not None, speed=style.speed * pace)
     speed, aside = style.speed * skeleton.scale, float(np.radians(style.aside))
+    if style.spin:
+        path, spun = _way_to_spin_on(path, style)
     if stride is None:
         route = plan_route(path, float(yaw_of(start.hips)), end_yaw, speed, fps, aside)
     else:
@@ -72,12 +75,11 @@ def walk_on(
         begun = plan_route(path, stride.heading, end_yaw, speed, fps, aside, stride.speed)
         route = begun.after(stride.place, stride.heading, stride.speed)
     if style.spin:
-        route = _with_spin(route, style.spin, fps)
+        route = _with_spin(route, style.spin, spun)
     if style.wobble:
         route = _staggering(route, style.wobble, rng, fps, room)
-    route, phase = plan_phase(route, style, skeleton, fps, rng, stride)
-    steps = plan_steps(start, route, phase, style, skeleton, rng, stride, room)
-    spread = arm_spread(len(phase), style, stride)
+    route, steps = _stepping(start, route, style, skeleton, rng, stride, room)
+    spread = arm_spread(route, style, skeleton.scale, depth, stride)
     pose = _carry(start, route, steps, style, skeleton, rng, spread, stride is not None)
     pose = settle_from(start, pose, fps) if stride is None else _taken_up(start, pose, stride, fps)
     if cut_m is None:
@@ -91,6 +93,34 @@ def walk_on(
     onward = pose.arms[made] - pose.arms[made - 1] if 0 < made < len(pose) else None
     stride = replace(_stride_at(last, path, gone_m, route, steps, spread), arms_onward=onward)
     return pose.at(slice(0, made)), stride, pose.at(slice(made, made + BEYOND))
+
+
+def _stepping(
+    start: Pose,
+    route: Route,
+    style: Walk,
+    skeleton: Skeleton,
+    rng: np.random.Generator,
+    stride: Stride | None,
+    room: Room,
+) -> tuple[Route, Steps]:
+    """The steps along a route, with the time that the last ones need: who goes on another way than he came along
+    hurries his next steps, so as not to leave a foot behind that was put down for the old way."""
+    row, state = cadence(), rng.bit_generator.state
+    best: tuple[Route, Steps] | None = None
+    least = np.inf
+    for hurry in row.hurry_ratios:
+        rng.bit_generator.state = state
+        longer, phase = plan_phase(route, style, skeleton, FPS, rng, stride, hurry)
+        steps = plan_steps(start, longer, phase, style, skeleton, rng, stride, room)
+        away = np.linalg.norm(steps.ankles[..., [0, 2]] - longer.position[:, None], axis=-1) * steps.planted
+        if best is not None and away.max() >= least:
+            break
+        best, least = (longer, steps), float(away.max())
+        if stride is None or least < row.left_behind_m * skeleton.scale:
+            break
+    assert best is not None
+    return best
 
 
 def _as_feet_change(steps: Steps, pelvis: Array, frame: int) -> int:
@@ -166,16 +196,29 @@ def _stride_at(frame: int, path: Array, gone_m: float, route: Route, steps: Step
     )
 
 
-def _with_spin(route: Route, turns: float, fps: int) -> Route:
-    """Whole turns on the spot, half-way along where the body is fastest or at the end of a short way."""
+def _way_to_spin_on(path: Array, style: Walk) -> tuple[Array, Array]:
+    """A path (N, 2) without its end, over which whole turns are made, and that end. (M, 2) each.
+
+    Who runs stops there.
+    """
+    row, points = carriage().way, resample(path)
+    wanted = row.spin_mps * style.spin * 2 * np.pi / row.spin_rad_per_s * (style.double > 0)
+    split = max(len(points) - 1 - int(wanted / SPACING), len(points) // 2)
+    return points[: split + 1], points[split:]
+
+
+def _with_spin(route: Route, turns: float, spun: Array) -> Route:
+    """Whole turns made while going on along points (M, 2)."""
     row = carriage().way
-    frames = int((turns * 2 * np.pi / row.spin_rad_per_s + row.spin_eases_s) * fps)
-    at = len(route.heading) - 1
-    angle = 2 * np.pi * turns * evenly(frames, fps)
+    frames = int((turns * 2 * np.pi / row.spin_rad_per_s + row.spin_eases_s) * FPS)
+    share = evenly(frames, FPS)
+    along = share * (len(spun) - 1)
+    places = np.stack([np.interp(along, np.arange(len(spun)), spun[:, axis]) for axis in (0, 1)], axis=1)
+    speed = np.linalg.norm(np.diff(places, axis=0, prepend=spun[:1]), axis=1) * FPS
     return Route(
-        np.concatenate([route.position, np.repeat(route.position[at : at + 1], frames, axis=0)]),
-        np.concatenate([route.heading, route.heading[at] + angle]),
-        np.concatenate([route.speed, np.zeros(frames)]),
+        np.concatenate([route.position, places]),
+        np.concatenate([route.heading, route.heading[-1] + 2 * np.pi * turns * share]),
+        np.concatenate([route.speed, speed]),
     )
 
 

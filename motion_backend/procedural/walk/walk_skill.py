@@ -23,7 +23,7 @@ from motion_backend.procedural.touch.hand_captions import arms_on_the_way
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
 from motion_backend.procedural.walk.root_path import SPACING, resample
-from motion_backend.procedural.walk.walk_styles import Walk, walk_style
+from motion_backend.procedural.walk.walk_styles import Walk, style_of, walk_style
 from motion_backend.procedural.walk.way_junction import ThroughWay, through_way, way_from
 from motion_backend.rotations import Array
 from scene_graphs.navigation.path_planner import Walkable
@@ -127,9 +127,7 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
             halt(body, action)
         return
     body.enter(PhaseKind.WALK)
-    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
-    # Who goes somewhere to do something on the spot walks there as one walks.
-    style = walk_style(action.emotion, "walk") if style.stays and action.stands else style
+    style = style_of(action)
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
@@ -202,7 +200,8 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
     if before is not None and float(np.quantile(spare(resample(points)), NARROW)) < ROOM_TO_SPREAD:
         body.note("no room for open arms: to the front")
         style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
-    walked = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare)
+    solid = body.scene.obstacles.solid()
+    walked = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare, solid.depth)
     frames, body.stride, body.beyond = walked
     body.add(gesture(frames, style.doing))
 

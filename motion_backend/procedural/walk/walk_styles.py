@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Final
 
-from motion_backend.motion import Emotion
+from motion_backend.motion import Action, Emotion, Skill
 from motion_backend.procedural.emotion_style import Bearing, bearings, carried
 from motion_backend.procedural.style_sheet import (
     ArmLengths,
@@ -142,6 +142,12 @@ def walk_style(emotion: Emotion, caption: str) -> Walk:
         said[name] = _farther(usually, getattr(mood, name), words[name])
     bearing, gait = carried(mood, said, Walk)
     return Walk(bearing=bearing, **gait)
+
+
+def style_of(action: Action) -> Walk:
+    """The way of walking to where an action is done: as one walks, where it is then done on the spot."""
+    style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
+    return walk_style(action.emotion, "walk") if style.stays and action.stands else style
 
 
 def _both(usual: float, mood: float, words: float, gently: bool) -> float:

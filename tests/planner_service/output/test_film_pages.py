@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from motion_backend.motion import FPS
 from planner_service.narration.told import Span, Told
 from planner_service.output.film import Filmed
-from planner_service.output.film_pages import LETTERS, READ, subtitles
+from planner_service.output.film_pages import LETTERS, QUICK, READ, subtitles
 from planner_service.pipeline import Pipeline, StoryRequest
 
 
@@ -26,6 +26,16 @@ def test_words_stand_for_as_long_as_their_letters_ask_within_bounds(letters: int
     assert (shown.stop - shown.start) / FPS == pytest.approx(
         min(max(least, first + len(text) / LETTERS), most), abs=1 / FPS
     )
+
+
+def test_words_go_when_what_they_tell_is_over_as_soon_as_they_could_be_read() -> None:
+    text = "He then remembered his wife and drank a whole bottle of old wine."
+    told = Told("", text, (Span(0, len(text), (0,)),))
+    (long,), (short,) = (subtitles(told, [(0, over), (over, 60 * FPS)], FPS) for over in (12 * FPS, 2 * FPS))
+    assert long.stop <= 12 * FPS, "there was time enough while he drank"
+    asked = min(READ[1] + len(text) / LETTERS, READ[2])
+    assert short.start == 0
+    assert short.stop / FPS == pytest.approx(QUICK * asked, abs=0.1), "it is read quickly, and he is gone"
 
 
 def test_a_film_is_of_the_home_the_motion_and_the_words_of_its_story() -> None:

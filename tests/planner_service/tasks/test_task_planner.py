@@ -418,7 +418,7 @@ def test_on_the_command_line_a_plan_is_a_table_and_with_a_folder_a_film(
     run = CliRunner().invoke(command_line, ["task", "sit down", "--layout", ROOM, "--out", str(tmp_path / "out")])
     assert run.exit_code == 0, run.output
     assert "sit down on the " in run.output
-    assert "2 of 2 keyframes reached" in run.output
+    assert "2 of 2 moments were done" in run.output
     story = json.loads((tmp_path / "out" / "story.json").read_text(encoding="utf-8"))
     assert [action["skill"] for action in story["actions"]] == ["loco", "sitdown"]
     routine = CliRunner().invoke(command_line, ["routine", "--layout", ROOM, "--count", "5", "--seed", "2"])

@@ -1,0 +1,56 @@
+"""Where in a film's first pictures a title stands: above the told words, beside the body, and over it only if it fills
+all of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from motion_backend.rendering.camera import FOV
+from motion_backend.rotations import Array
+
+if TYPE_CHECKING:
+    from motion_backend.rendering.film_shots import FilmShot
+
+EVERY: Final = 5
+"""Frames between two looks."""
+SKIN: Final = 0.16
+"""Metres around a joint that hands, feet, hair and skin reach, with some air."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Shares of a picture: how much of the free width is on the left of words, and where in its height they end."""
+
+    across: float
+    bottom: float
+
+    def box(self, words: tuple[int, int], size: tuple[int, int]) -> tuple[float, float, float, float]:
+        """Left, top, right and bottom of words (height, width), in pixels of a picture (width, height)."""
+        left, bottom = self.across * (size[0] - words[1]), self.bottom * size[1]
+        return left, bottom - words[0], left + words[1], bottom
+
+
+PLACES: Final = (
+    *(Place(across, 0.20) for across in (0.08, 0.92, 0.5)),
+    *(Place(across, bottom) for bottom in (0.45, 0.72) for across in (0.08, 0.92)),
+)
+"""The most wanted first."""
+
+
+def title_place(words: tuple[int, int], size: tuple[int, int], shots: Sequence[FilmShot], joints: Array) -> Place:
+    """The first place in which words (height, width) lie on nothing of the body, else on least of it, in the first T
+    pictures (width, height), which these shots show; `joints` (T, 22, 3) of the body in the world."""
+    hidden = np.zeros(len(PLACES))
+    for shot in shots:
+        for frame in range(shot.start, min(shot.stop, len(joints)), EVERY):
+            x, y, nearness = np.moveaxis(shot.camera.project(shot.camera.view(joints[frame]), size), -1, 0)
+            skin = SKIN * nearness * size[1] / (2 * np.tan(FOV / 2))
+            for number, place in enumerate(PLACES):
+                left, top, right, bottom = place.box(words, size)
+                over = (x + skin > left) & (x - skin < right) & (y + skin > top) & (y - skin < bottom)
+                hidden[number] += np.count_nonzero(over)
+    return PLACES[int(hidden.argmin())]
