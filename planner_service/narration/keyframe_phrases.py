@@ -149,8 +149,8 @@ class Wording:
             leads = keyframe.skill == Skill.LOCO and goal is not None
             rests = goal is not None and goal.skill in RESTS
             stays = stays or (keyframe.skill in RISINGS and rests) or self._goes_on(keyframe)
-            unsaid = leads and rests and keyframe.caption in templates().neutral_walks and self.variety.chance(0.5)
-            if (rests and stays) or unsaid:
+            plain = leads and rests and keyframe.caption in templates().neutral_walks
+            if (rests and stays) or (plain and self.variety.chance(0.5)):  # chance is asked last
                 untold = (*untold, index)
                 continue
             told.append(self._phrase((*untold, index), keyframe, leads, stays))
