@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion_backend.diffusion.motion_features import PLACES
 from motion_backend.rendering.film_picture import lay_words, split
+from motion_backend.rendering.title_place import PLACES
 from planner_service.output.film import TEXT_HEIGHT, TITLE_HEIGHT, WORDS_END
 from planner_service.output.film_letters import lettered, titled
 
