@@ -342,6 +342,9 @@ class KeyframeWriter:
                 self.keyframes[-1] = last.model_copy(update={"caption": ways[0]})
             self.body.show(index)
             return
+        if self.body.resting is None and not deed.named and any(one.skill in RISINGS for one in self.keyframes):
+            self.why[index] = "the body is on its feet already"
+            return
         if self.body.resting is None:
             self._begin(index, deed, mood)
         if self.body.resting is None:
