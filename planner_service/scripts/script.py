@@ -38,10 +38,16 @@ def legible(text: object) -> object:
 Line = Annotated[str, BeforeValidator(legible)]
 
 
-class Keyframe(BaseModel):
+class _ScriptPart(BaseModel):
+    """What scripts are made of: it never changes, and has its own fields alone."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Keyframe(_ScriptPart):
     """One moment of a script: a skill in an emotion, told by a caption, at a piece of furniture or the floor."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+    model_config = ConfigDict(populate_by_name=True)
 
     skill: Skill
     emotion: Line = Field("neutral", validation_alias=AliasChoices("emotion", "emotion/style"), max_length=80)
@@ -67,10 +73,8 @@ class Keyframe(BaseModel):
         return self.furniture.lower() == "floor"
 
 
-class ScriptGraph(BaseModel):
+class ScriptGraph(_ScriptPart):
     """The furniture a script uses and which pieces belong together; nodes as in `Keyframe.furniture`."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     nodes: tuple[tuple[Word, Instance], ...] = Field((), max_length=MAX_PIECES)
     edges: tuple[tuple[Place, Place], ...] = Field((), max_length=MAX_PIECES * (MAX_PIECES - 1) // 2)
@@ -84,10 +88,8 @@ class ScriptGraph(BaseModel):
         return edges
 
 
-class Origin(BaseModel):
+class Origin(_ScriptPart):
     """Where a short script was found, or what it was made in the manner of."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     name: Line = Field(min_length=1, max_length=200)
     """What the film, text or model is called; a name, never a path."""
@@ -108,10 +110,8 @@ class Origin(BaseModel):
         return end
 
 
-class ShortScript(BaseModel):
+class ShortScript(_ScriptPart):
     """A few keyframes with one summary: what the library keeps and a story is woven from."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     id: str = Field(pattern=r"^[a-z0-9][a-z0-9-]{0,79}$")
     summary: Line = Field(min_length=1, max_length=400)
@@ -146,10 +146,8 @@ class PlannedKeyframe(Keyframe):
     """Whether the body sits or lies there when the story begins; so only of the first keyframe."""
 
 
-class Retrieved(BaseModel):
+class Retrieved(_ScriptPart):
     """A short script that was chosen, for which beat of the theme, and how near its summary was."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     script: ShortScript
     beat: int
@@ -162,10 +160,8 @@ happened before and is only thought of · what somebody else or the world does, 
 Sunday" · what is said."""
 
 
-class Beat(BaseModel):
+class Beat(_ScriptPart):
     """One thing that a theme says happens, or does not, in the order of time."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     text: Line
     """The theme's words for it, without whom the story is about: "drinks a glass of wine"."""
@@ -200,10 +196,8 @@ Pronouns = Literal["he", "she", "they"]
 MAX_NAME_LENGTH: Final = 40
 
 
-class Person(BaseModel):
+class Person(_ScriptPart):
     """Whom a theme is about, as a language model read it; what it does not tell is empty."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     name: Line = Field("", max_length=MAX_NAME_LENGTH)
     pronouns: Pronouns | Literal[""] = ""
@@ -211,10 +205,8 @@ class Person(BaseModel):
     """Years."""
 
 
-class LongScript(BaseModel):
+class LongScript(_ScriptPart):
     """The whole plan: beats of the theme, the short scripts chosen for them, and every keyframe in order."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
     theme: str
     beats: tuple[Beat, ...]
