@@ -45,7 +45,7 @@ def main() -> int:
         figures += geometry_figures()
         figures += reading_figures()
         figures += film_figures(Path(folder))
-        figures += file_figures(made, Path(folder))
+        figures += file_figures(pipeline, Path(folder))
         figures += service_figures(Path(folder))
     figures += quality_figures(made)
     as_markdown = "--markdown" in sys.argv[1:]

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from benchmarks.figure import Figure
-from benchmarks.themes import SEED, THEMES
+from benchmarks.themes import LONG, SEED, THEMES
 from motion_backend.director import Director
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.metrics.story_metrics import summarise
@@ -23,7 +23,9 @@ from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Pipeline, Planned, Story, StoryRequest, judge, move
 
 PLAN_MS, SPEED = 300.0, 40.0
-REACHED, CONTACT_CM, PEN_MEAN_CM, PEN_SHARE, SKATE = 95.0, 3.0, 2.0, 5.0, 5.0
+REACHED, CONTACT_CM, PEN_MEAN_CM, PEN_SHARE = 95.0, 3.0, 2.0, 5.0
+SKATE = 16.0
+"""Percent; the published definition calls so much of recorded walking skating (docs/metrics.md)."""
 FILM_MS, FILM_MB = 300.0, 1.5
 FILMED_S, FILMED_MB = 30.0, 8.0
 MINUTE = 60
@@ -89,30 +91,34 @@ def speed_figures(made: Sequence[Timed]) -> list[Figure]:
     ]
 
 
-def file_figures(made: Sequence[Timed], folder: Path) -> list[Figure]:
-    """Writing and filming a minute, and the whole storyboard of the story with most keyframes."""
-    largest = max(made, key=lambda one: len(one.story.actions)).story
-    planned, count = largest.planned, len(largest.actions)
-    minute = largest.motion.part(0, MINUTE * largest.motion.fps)
-    film, writing = timed(lambda: film_glb(planned.home, minute))
-    targets = [action.object_id for action in largest.actions]
+def file_figures(pipeline: Pipeline, folder: Path) -> list[Figure]:
+    """Writing and filming a minute of a longer story, and its whole storyboard. ValueError where it is no minute."""
+    story = pipeline.make(StoryRequest(LONG, seed=SEED))
+    planned, count = story.planned, len(story.actions)
+    minute = story.motion.part(0, MINUTE * story.motion.fps)
+    if minute.duration < MINUTE:
+        raise ValueError(f"a story of {minute.duration:.0f} s tells nothing of one of {MINUTE} s")
+    film, writing = timed(lambda: film_glb(planned.home, minute, story.role))
+    _, again = timed(lambda: film_glb(planned.home, minute, story.role))
+    targets = [action.object_id for action in story.actions]
     _, drawing = timed(
-        lambda: storyboard(planned.home, largest.motion, planned.script.keyframes, folder / "board.png", "", targets)
+        lambda: storyboard(planned.home, story.motion, planned.script.keyframes, folder / "board.png", "", targets)
     )
-    filmed, filming, worked = _film(largest, minute, folder)
+    filmed, filming, worked = _film(story, minute, folder)
     speed = f"{minute.duration / filming:.1f} times as fast as it plays, {worked:.0f} s of one core"
-    length = f"the first {minute.duration:.0f} s of {largest.motion.duration:.0f} s, {len(planned.home.rooms)} rooms"
+    length = f"the first minute of {story.motion.duration:.0f} s, {len(planned.home.rooms)} rooms"
+    looks = f"{length}; with the body built; once it is, {1000 * again:.0f} ms"
     return [
-        Figure("film.glb of a 60 s story, written", 1000 * writing, "ms", FILM_MS, note=length, digits=0),
+        Figure("film.glb of a 60 s story, written", 1000 * writing, "ms", FILM_MS, note=looks, digits=0),
         Figure("film.glb of a 60 s story, size", len(film) / 1e6, "MB", FILM_MB, note=length, digits=2),
         Figure(
             "film.mp4 of a 60 s story, filmed",
-            filming * MINUTE / minute.duration,
+            filming,
             "s",
             FILMED_S,
             note=f"{length}; 1280 × 720; {speed}",
         ),
-        Figure("film.mp4 of a 60 s story, size", filmed * MINUTE / minute.duration, "MB", FILMED_MB, note=length),
+        Figure("film.mp4 of a 60 s story, size", filmed, "MB", FILMED_MB, note=length),
         Figure("storyboard for 20 keyframes", drawing / count * 20, "s", note=f"from {count} keyframes"),
     ]
 

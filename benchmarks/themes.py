@@ -12,6 +12,11 @@ FILE = Path(planner_service.__file__).parent / "data" / "evaluation" / "seven_th
 THEMES: dict[str, str] = json.loads(FILE.read_text(encoding="utf-8"))
 SEED = 7
 """Of the stories of these."""
+LONG = (
+    "He wakes up, reads at the desk, sits on the sofa, argues on the phone, drinks, dances, tidies the shelf, "
+    "eats at the table, gets angry, calms down and falls asleep in bed."
+)
+"""A theme whose story lasts for more than a minute."""
 MAKEFILE = Path(__file__).resolve().parents[1] / "Makefile"
 
 

@@ -1,6 +1,6 @@
 """The pictures of the docs, made by our own code: `python docs/images/draw.py` writes them here, all but page.png.
 
-That one a browser takes of the demo's story, 1440 × 900 pixels.
+That one a browser takes of the demo's story: `node docs/images/page.mjs URL`, with the URL of a service.
 """
 
 from __future__ import annotations

@@ -73,12 +73,18 @@ def _prices() -> Array:
     return price
 
 
-def _swinging(side: str) -> Array:
-    price = PRICES_WALKING.copy()
+def _legs_first(prices: Array, times: float, *sides: str) -> Array:
+    """Prices in which the joints of some legs count more."""
+    found = prices.copy()
     for joint in SIMULATED:
-        if joint.name in (f"{side}_hip", f"{side}_knee", f"{side}_ankle"):
-            price[joint.qvel : joint.qvel + (1 if joint.axis else 3)] *= 10.0
-    return price
+        if joint.name in {f"{side}_{one}" for side in sides for one in ("hip", "knee", "ankle")}:
+            found[joint.qvel : joint.qvel + (1 if joint.axis else 3)] *= times
+    return found
+
+
+def _by_leg(prices: Array, times: float) -> tuple[Array, ...]:
+    """Prices where the left or the right leg swings."""
+    return tuple(_legs_first(prices, times, side) for side, _ in SIDES)
 
 
 PRICES: Final = _prices()
@@ -91,8 +97,15 @@ PRICES_GOING_DOWN: Final[Array] = PRICES * np.repeat([3.0, 1.0, 3.0, 1.0], [6, N
 PRICES_WALKING: Final[Array] = PRICES * np.where(np.arange(NX) == 1, 10.0, 1.0)
 """The same where it walks: the height of the pelvis counts ten times as much, since it sank by a centimetre and feet
 hung as much lower."""
-PRICES_SWINGING: Final[tuple[Array, ...]] = tuple(_swinging(side) for side, _ in SIDES)
-"""And so do the joints of the leg that swings, left or right, while the other stands."""
+SWINGING: Final[dict[Doing, tuple[Array, ...]]] = {
+    Doing.WALKS: _by_leg(PRICES_WALKING, 10.0),
+    Doing.GOES_DOWN: _by_leg(PRICES_GOING_DOWN, 5.0),
+    Doing.STANDS_UP: _by_leg(PRICES_PELVIS, 5.0),
+}
+"""And so do the joints of the leg that swings, left or right, while the other stands; on one's knees half as much."""
+PRICES_LYING: Final[Array] = _legs_first(PRICES_PELVIS, 4.0, "left", "right")
+"""Where it lies down, or gets up from the floor, legs count more too: feet that the plan lifts were drawn over the
+floor."""
 
 
 class Moment(NamedTuple):
@@ -229,14 +242,19 @@ class Controller:
         return pressure or Pressure()
 
     def _prices(self, at: int) -> Array:
-        match self.reference.doing[at]:
+        does = Doing(self.reference.doing[at])
+        stands = self.reference.planted[at].reshape(2, 2).any(axis=1)
+        if does in SWINGING and stands.sum() == 1:
+            return SWINGING[does][int(stands.argmin())]
+        match does:
             case Doing.GOES_DOWN:
                 return PRICES_GOING_DOWN
-            case Doing.LIES | Doing.RISES | Doing.STANDS_UP:
+            case Doing.LIES | Doing.RISES:
+                return PRICES_LYING
+            case Doing.STANDS_UP:
                 return PRICES_PELVIS
             case Doing.WALKS:
-                stands = self.reference.planted[at].reshape(2, 2).any(axis=1)
-                return PRICES_SWINGING[int(stands.argmin())] if stands.sum() == 1 else PRICES_WALKING
+                return PRICES_WALKING
         return PRICES
 
     def _change(self, at: int) -> float:

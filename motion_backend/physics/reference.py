@@ -29,9 +29,11 @@ TURNED: Final = 1e-3
 """A collar turned by less (radians) counts as at rest."""
 ARM_OVER: Final = 0.05
 """Elbows and wrists are so high over the floor, at 1.70 m (metres)."""
-LIFTS: Final = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0)
-"""How far an elbow is turned upwards, from the least on."""
-ARM_EASES: Final = 5
+RADIUS: Final = 0.02
+"""The least radius of the circle that an elbow is turned on (metres): a straight arm has nothing to turn."""
+MOST_TURNED: Final = 0.6
+"""No elbow is turned by more (radians): one that swings through below the line would have to go round over it."""
+ARM_EASES: Final = 8
 """Frames before and after in which that comes and goes."""
 UP: Final = np.array([0.0, 1.0, 0.0])
 FASTEST: Final = 8.0
@@ -212,14 +214,10 @@ def _arms_over_floor(roots: Array, local: Array, skeleton: Skeleton) -> Array:
             continue
         at, middle, hand = (positions[:, joint].astype(np.float64) for joint in (shoulder, elbow, wrist))
         lengths, raised = bones(skeleton, side), eased(np.maximum(least - hand[:, 1], 0.0), ARM_EASES)
-        target = hand + raised[:, None] * UP
-        pole, turn = middle - at, _turn_up(middle - at, target - at)
-        poles = [rotations.rotate(rotations.rotvec_to_quat(lift * turn), pole) for lift in LIFTS]
-        heights = np.stack([at[:, 1] + lengths[0] * two_bone(at, target, one, lengths).upper[:, 1] for one in poles])
-        needed = np.array(LIFTS)[np.where((heights >= least).any(axis=0), (heights >= least).argmax(axis=0), -1)]
-        lifted = eased(needed, ARM_EASES)
-        frames = np.flatnonzero(lifted + raised)
-        pole = rotations.rotate(rotations.rotvec_to_quat(lifted[:, None] * turn), pole)
+        target, pole = hand + raised[:, None] * UP, middle - at
+        axis, turn = _turned_up(at, target, pole, lengths, least)
+        frames = np.flatnonzero(turn + raised)
+        pole = rotations.rotate(rotations.rotvec_to_quat(turn[:, None] * axis), pole)
         limb = two_bone(at[frames], target[frames], pole[frames], lengths)
         upper, lower = arm_rotations(limb, int(sign))
         found[frames, shoulder] = rotations.compose(rotations.inverse(world[frames, INDEX["spine3"]]), upper)
@@ -228,10 +226,20 @@ def _arms_over_floor(roots: Array, local: Array, skeleton: Skeleton) -> Array:
     return found
 
 
-def _turn_up(pole: Array, reach: Array) -> Array:
-    """What turns elbows about the line from shoulder to wrist (T, 3) until they point up: rotation vectors without a
-    jump, of poles (T, 3). (T, 3)."""
-    axis = rotations.normalize(reach)
+def _turned_up(
+    at: Array, target: Array, pole: Array, lengths: tuple[float, float], least: float
+) -> tuple[Array, Array]:
+    """Lines from shoulders to wrists (T, 3), and by how much elbows are turned about them (T,) to be over the floor: as
+    little as it takes, on the side on which they are."""
+    limb = two_bone(at, target, pole, lengths)
+    axis, elbow = rotations.normalize(target - at), lengths[0] * limb.upper
+    along = rotations.dot(elbow, axis)
+    radius = np.maximum(np.linalg.norm(elbow - along * axis, axis=1), RADIUS)
     across = rotations.cross(axis, np.broadcast_to(UP, axis.shape))
-    sine, cosine = -rotations.dot(pole, across)[:, 0], pole[:, 1] - (rotations.dot(pole, axis) * axis)[:, 1]
-    return np.asarray(np.unwrap(np.arctan2(sine, cosine))[:, None] * axis)
+    sine, cosine = rotations.dot(elbow, across)[:, 0], elbow[:, 1] - along[:, 0] * axis[:, 1]
+    # From where the elbow would be highest; the circle it can be on leans as much as the line from shoulder to wrist.
+    angle = np.arctan2(sine, cosine)
+    steep = np.maximum(radius * np.linalg.norm(across, axis=1), RADIUS)
+    most = np.arccos(np.clip((least - at[:, 1] - along[:, 0] * axis[:, 1]) / steep, -1.0, 1.0))
+    needed = np.sign(angle) * np.clip(most - np.abs(angle), -MOST_TURNED, 0.0)
+    return axis, eased(np.maximum(needed, 0.0), ARM_EASES) - eased(np.maximum(-needed, 0.0), ARM_EASES)

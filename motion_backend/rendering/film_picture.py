@@ -38,7 +38,7 @@ def lay_words(planes: Planes, letters: NDArray[np.float32], bottom: float, shade
     """
     bright, *colors = split(planes)
     height, width = (2 * (side // 2) for side in letters.shape)
-    top = 2 * round(bottom * bright.shape[0] / 2) - height
+    top = max(2 * round(bottom * bright.shape[0] / 2) - height, 0)
     left = 2 * int(across * (bright.shape[1] - width) / 2)
     cover = letters[:height, :width]
     part = bright[top : top + height, left : left + width]

@@ -1,5 +1,5 @@
-"""Where in a film's first pictures a title stands: above the told words, beside the body, and over it only if it fills
-all of them."""
+"""Where in a film's first pictures a title stands, and until when: above the told words, beside the body, and over it
+only if it fills all of them."""
 
 from __future__ import annotations
 
@@ -35,16 +35,20 @@ class Place:
 
 
 PLACES: Final = (
-    *(Place(across, 0.20) for across in (0.08, 0.92, 0.5)),
-    *(Place(across, bottom) for bottom in (0.45, 0.72) for across in (0.08, 0.92)),
+    *(Place(across, 0.16) for across in (0.05, 0.95, 0.5)),
+    *(Place(across, bottom) for bottom in (0.45, 0.72) for across in (0.05, 0.95)),
 )
 """The most wanted first."""
 
 
-def title_place(words: tuple[int, int], size: tuple[int, int], shots: Sequence[FilmShot], joints: Array) -> Place:
-    """The first place in which words (height, width) lie on nothing of the body, else on least of it, in the first T
-    pictures (width, height), which these shots show; `joints` (T, 22, 3) of the body in the world."""
+def title_place(
+    words: tuple[int, int], size: tuple[int, int], shots: Sequence[FilmShot], joints: Array
+) -> tuple[Place, int]:
+    """The place in which words (height, width) lie for longest on nothing of the body, in the first T pictures
+    (width, height), which these shots show, and the frame until which they do; of places alike the one with least of
+    the body, then the first. `joints` (T, 22, 3) are the body's in the world."""
     hidden = np.zeros(len(PLACES))
+    clear = np.full(len(PLACES), len(joints))
     for shot in shots:
         for frame in range(shot.start, min(shot.stop, len(joints)), EVERY):
             x, y, nearness = np.moveaxis(shot.camera.project(shot.camera.view(joints[frame]), size), -1, 0)
@@ -53,4 +57,7 @@ def title_place(words: tuple[int, int], size: tuple[int, int], shots: Sequence[F
                 left, top, right, bottom = place.box(words, size)
                 over = (x + skin > left) & (x - skin < right) & (y + skin > top) & (y - skin < bottom)
                 hidden[number] += np.count_nonzero(over)
-    return PLACES[int(hidden.argmin())]
+                if over.any():
+                    clear[number] = min(clear[number], frame)
+    best = int(np.lexsort((hidden, -clear))[0])
+    return PLACES[best], int(clear[best])

@@ -101,11 +101,6 @@ app = typer.Typer(no_args_is_help=True, help="Recorded and keyed motion, retarge
 app.command()(sheet)
 
 
-@app.callback()
-def clips() -> None:
-    """Recorded and keyed motion, retargeted to our body."""
-
-
 @app.command()
 def build(
     folder: Annotated[

@@ -132,11 +132,6 @@ app.command()(physics)
 app.command()(scripts)
 
 
-@app.callback()
-def evaluate() -> None:
-    """Measure the planner against written labels, and the body in many rooms."""
-
-
 @app.command()
 def planning(
     as_json: JsonOption = False,

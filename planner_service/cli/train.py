@@ -50,11 +50,6 @@ app.command()(embedding)
 app.command()(physics)
 
 
-@app.callback()
-def train() -> None:
-    """Train the networks that read themes and move a body, and make motion to train them on."""
-
-
 @app.command()
 def act(
     out: Annotated[Path, typer.Option(help="Write the motion here, as .npz.")],

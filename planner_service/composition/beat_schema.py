@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any, Final, get_args
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 from motion_backend.motion import Skill
 from planner_service.scripts.captions import captions
@@ -26,8 +26,6 @@ _RESTS: Final = {
 
 class BeatsAnswer(BaseModel):
     """The answer to `prompts/plan_beats.md`, as loosely as it can be read."""
-
-    model_config = ConfigDict(extra="ignore")
 
     person: Any = None
     beats: list[Any]

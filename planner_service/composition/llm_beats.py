@@ -14,7 +14,7 @@ from functools import cache
 from itertools import zip_longest
 from typing import Annotated, Any, Final, get_args
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import BaseModel, BeforeValidator, ValidationError
 
 import prompts
 from motion_backend.emotion_words import emotion_of
@@ -181,8 +181,6 @@ Loose = Annotated[str, BeforeValidator(lambda value: _plain(value) if isinstance
 
 class _Row(BaseModel):
     """One beat as a model wrote it."""
-
-    model_config = ConfigDict(extra="ignore")
 
     text: Annotated[str, BeforeValidator(legible)]
     kind: Loose = ""

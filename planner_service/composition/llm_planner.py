@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ValidationError
 
 import prompts
 from motion_backend.emotion_words import emotion_of
@@ -21,37 +21,33 @@ MAX_KEYFRAMES: Final = 40
 _MAX_CAPTIONS: Final = 40
 
 
-class _Answer(BaseModel):
-    model_config = ConfigDict(extra="ignore")
-
-
-class PlannedEvent(_Answer):
+class PlannedEvent(BaseModel):
     """One event as a model writes it."""
 
     text: str
     emotion: str
 
 
-class PlannedEvents(_Answer):
+class PlannedEvents(BaseModel):
     """The answer to `prompts/plan_events.md`."""
 
     events: list[PlannedEvent]
 
 
-class Choice(_Answer):
+class Choice(BaseModel):
     """A short script chosen for an event."""
 
     event: int
     script: str
 
 
-class Arrangement(_Answer):
+class Arrangement(BaseModel):
     """The answer to `prompts/arrange_story.md`."""
 
     choices: list[Choice]
 
 
-class DirectKeyframe(_Answer):
+class DirectKeyframe(BaseModel):
     """One keyframe as a model writes it."""
 
     skill: str
@@ -60,7 +56,7 @@ class DirectKeyframe(_Answer):
     furniture: str
 
 
-class DirectScript(_Answer):
+class DirectScript(BaseModel):
     """The answer to `prompts/direct_script.md`."""
 
     keyframes: list[DirectKeyframe]

@@ -12,7 +12,7 @@ from random import Random
 from typing import Final
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ValidationError
 
 import prompts
 from motion_backend.motion import Skill
@@ -101,16 +101,12 @@ _SHOWN: Final = 12
 class WrittenScript(BaseModel):
     """One short script as a model writes it."""
 
-    model_config = ConfigDict(extra="ignore")
-
     summary: str
     keyframes: list[DirectKeyframe]
 
 
 class WrittenScripts(BaseModel):
     """The answer to `prompts/imitate_scripts.md`."""
-
-    model_config = ConfigDict(extra="ignore")
 
     scripts: list[WrittenScript]
 

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ValidationError
 
 import prompts
 from motion_backend.emotion_words import emotion_of
@@ -95,8 +95,6 @@ Numbered = Mapping[int, TextScene]
 class FoundScript(BaseModel):
     """One short script as a model writes it."""
 
-    model_config = ConfigDict(extra="ignore")
-
     scene: int
     summary: str
     emotion: str
@@ -106,8 +104,6 @@ class FoundScript(BaseModel):
 
 class FoundScripts(BaseModel):
     """The answer to `prompts/extract_scripts.md`."""
-
-    model_config = ConfigDict(extra="ignore")
 
     scripts: list[FoundScript]
 

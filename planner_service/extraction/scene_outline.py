@@ -20,18 +20,14 @@ Said = Annotated[str, Field(max_length=500)]
 Name = Annotated[str, Field(max_length=80)]
 
 
-class _Answer(BaseModel):
-    model_config = ConfigDict(extra="ignore")
-
-
-class SeenCharacter(_Answer):
+class SeenCharacter(BaseModel):
     """Somebody in the scene, as a model writes it."""
 
     name: Name
     emotion: Name
 
 
-class SeenContact(_Answer):
+class SeenContact(BaseModel):
     """Somebody touching, sitting or lying on something, as a model writes it."""
 
     character: Name
@@ -40,7 +36,7 @@ class SeenContact(_Answer):
     time: float
 
 
-class SeenMoment(_Answer):
+class SeenMoment(BaseModel):
     """Something that happens, as a model writes it."""
 
     time: float
@@ -49,7 +45,7 @@ class SeenMoment(_Answer):
     emotion: Name
 
 
-class SceneAnswer(_Answer):
+class SceneAnswer(BaseModel):
     """The answer to `prompts/watch_scene.md`."""
 
     room: Name

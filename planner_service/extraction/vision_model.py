@@ -10,7 +10,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 import prompts
 from motion_backend.motion import Skill
@@ -42,8 +42,6 @@ class FilmedScript(FoundScript):
 
 class FilmedScripts(BaseModel):
     """The answer to `prompts/write_scripts.md`."""
-
-    model_config = ConfigDict(extra="ignore")
 
     scripts: list[FilmedScript]
 

@@ -23,59 +23,38 @@ _BLANKS: Final = ("to", "about", "back", "on", "onto", "the", "room")
 
 @table
 class Walk:
-    """Ways to word one way of walking."""
+    """Ways to word one way of walking: towards a piece of furniture, and with no goal but the room."""
 
     to: tuple[str, ...]
-    """Towards a piece of furniture."""
     about: tuple[str, ...]
-    """With no goal but the room."""
 
 
 @table
 class Phrases:
-    """data/keyframe_phrases.toml: templates.
-
-    They start with a verb in its base form; further verbs are marked with ~. Blanks: {to} "to the sofa", {about}
-    "around the bedroom", {back} "up and down in the bedroom", {on} "on the sofa" or "in the armchair", {onto}, {the}
-    "the sofa", and the pronouns of `Voice.fill`.
-    """
+    """data/keyframe_phrases.toml: templates. How they are written, and what each is for, stands there; their blanks are
+    `_BLANKS` and the pronouns of `Voice.fill`."""
 
     neutral_walks: tuple[str, ...]
-    """Captions of the walks that a walk to furniture is usually done in."""
     still: tuple[str, ...]
-    """Captions that tell nothing beside what is done meanwhile."""
     to: tuple[str, ...]
     about: tuple[str, ...]
     back: tuple[str, ...]
     further: tuple[str, ...]
-    """Where a walk with no goal goes in the room of the one before."""
     further_back: tuple[str, ...]
-    """The same of a walk up and down."""
     walks: dict[str, Walk]
-    """By caption."""
     walks_in_mood: dict[str, Walk]
-    """For any other caption."""
     sits_in_mood: dict[str, tuple[str, ...]]
     sits: dict[str, tuple[str, ...]]
-    """By caption the manner that may follow; so for lying."""
     lies_in_mood: dict[str, tuple[str, ...]]
     lies: dict[str, tuple[str, ...]]
     rests_again: tuple[str, ...]
-    """Where the body has just rested."""
     rests_already: dict[Skill, tuple[str, ...]]
-    """Where the body rests when the story begins."""
     rests_on: dict[Skill, tuple[str, ...]]
-    """In another way, where the body sits or lies already."""
     turns: dict[str, tuple[str, ...]]
-    """By skill, where it sits or lies and does the other next."""
     rises: dict[Literal["neutral", "slow", "fast"], tuple[str, ...]]
-    """By pace."""
     touches: dict[str, tuple[str, ...]]
-    """By height."""
     touches_at: dict[str, dict[str, tuple[str, ...]]]
-    """By class of furniture and height, where the general wording would be pale."""
     touches_doing: dict[str, tuple[str, ...]]
-    """By caption, where it says what is done."""
 
     def __post_init__(self) -> None:
         require_blanks("", vars(self), _BLANKS)
@@ -170,8 +149,8 @@ class Wording:
             leads = keyframe.skill == Skill.LOCO and goal is not None
             rests = goal is not None and goal.skill in RESTS
             stays = stays or (keyframe.skill in RISINGS and rests) or self._goes_on(keyframe)
-            unsaid = leads and rests and keyframe.caption in templates().neutral_walks and self.variety.chance(0.5)
-            if (rests and stays) or unsaid:
+            plain = leads and rests and keyframe.caption in templates().neutral_walks
+            if (rests and stays) or (plain and self.variety.chance(0.5)):  # chance is asked last
                 untold = (*untold, index)
                 continue
             told.append(self._phrase((*untold, index), keyframe, leads, stays))

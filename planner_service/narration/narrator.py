@@ -26,6 +26,7 @@ from planner_service.narration.tense import bases, form_of
 from planner_service.narration.told import Told, Words, page
 from planner_service.scripts.acted_beats import connects, planned_beats
 from planner_service.scripts.script import LongScript, PlannedKeyframe
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_told
 from scene_graphs.furniture import class_of, display_name, is_known
 
@@ -76,7 +77,9 @@ def _mood_of(script: LongScript) -> str:
 
 def _thing_in(script: LongScript) -> str:
     """The small thing that deeds are done to most, the first of two as frequent; "" where none is."""
-    of = [word for beat in script.beats if beat.kind == "deed" and beat.seen for word in things_told(beat.text)]
+    deeds = [beat for beat in script.beats if beat.kind == "deed" and beat.seen]
+    body = theme_words()["body"] | {"feet", "teeth", "hands", "eyes"}
+    of = [word for beat in deeds for word in things_told(beat.text) if word.lower() not in body]
     return max(of, key=of.count) if of else ""
 
 

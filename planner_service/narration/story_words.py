@@ -27,20 +27,14 @@ class Said:
 
 @table
 class StoryWords:
-    """data/story_words.toml."""
+    """data/story_words.toml; what each table is for stands there."""
 
     after_verbs: str
-    """Words that follow a verb rather than a noun."""
     helpers: dict[str, str]
-    """Helping verbs in the past; {was} is was or were."""
     days: dict[str, str]
-    """Days named from the writer's present, named from the story's."""
     deeds: dict[str, str]
-    """By skill, verbs that say what a body does there."""
     mood_titles: dict[str, str]
-    """Where no title fits."""
     times: tuple[Said, ...]
-    """The first that is found is taken; so for titles."""
     titles: tuple[Said, ...]
 
     def __post_init__(self) -> None:

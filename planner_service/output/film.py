@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 
 SIZE: Final = (1280, 720)
 """Pixels across and down."""
-TITLE_SECONDS: Final = 2.5
+TITLE_SECONDS: Final = (1.6, 2.5)
+"""At least, and as long as nobody walks under it."""
 FIRST_WORDS: Final = 1.0
 """Seconds after which told words may begin under it."""
 TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
@@ -78,8 +79,9 @@ def write_film(
     motion, told = filmed.motion, filmed.told
     shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1], filmed.role)
     title = titled(told.title, size, TITLE_HEIGHT)
-    untitled = round(TITLE_SECONDS * motion.fps) if title is not None else 0
-    place, shots = (PLACES[0], shots) if title is None else _placed(title.shape, size, shots, motion, untitled)
+    place, untitled = PLACES[0], 0
+    if title is not None:
+        place, untitled, shots = _placed(title.shape, size, shots, motion)
     lines = subtitles(told, filmed.segments, motion.fps, round(FIRST_WORDS * motion.fps) if untitled else 0)
     words = [(line, lettered(line.lines, size, TEXT_HEIGHT)) for line in lines]
 
@@ -100,11 +102,13 @@ def write_film(
 
 
 def _placed(
-    words: tuple[int, ...], size: tuple[int, int], shots: Iterator[FilmShot], motion: Motion, frames: int
-) -> tuple[Place, Iterator[FilmShot]]:
-    """Where a title (height, width) stands for its frames, and all shots again."""
+    words: tuple[int, ...], size: tuple[int, int], shots: Iterator[FilmShot], motion: Motion
+) -> tuple[Place, int, Iterator[FilmShot]]:
+    """Where a title (height, width) stands, the frame at which it goes, and all shots again."""
+    least, frames = (round(seconds * motion.fps) for seconds in TITLE_SECONDS)
     first: list[FilmShot] = []
     while not first or first[-1].stop < min(frames, len(motion)):
         first.append(next(shots))
     joints = motion.part(0, min(frames, len(motion))).joint_positions().astype(np.float64)
-    return title_place((words[0], words[1]), size, first, joints), chain(first, shots)
+    place, clear = title_place((words[0], words[1]), size, first, joints)
+    return place, max(least, clear), chain(first, shots)

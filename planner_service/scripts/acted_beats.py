@@ -19,10 +19,10 @@ IN_ITS_PLACE: Final = "the body is seen doing something else in its place"
 AT_THE: Final = "at the"
 IN_PLACE_OF: Final = " in place of the "
 """Words of a note on hands that are at another piece than the theme names, before and after that."""
-LEGEND: Final = (
-    f"acted: the body is seen doing it, with empty hands; something stands for it: {IN_ITS_PLACE}; "
-    "not shown: words that the body does not show; left undone: the theme says it is not done"
-)
+ACTED: Final = "acted: the body is seen doing it, with empty hands"
+STANDS: Final = f"something stands for it: {IN_ITS_PLACE}"
+NOT_SHOWN: Final = "not shown: words that the body does not show"
+LEFT_UNDONE: Final = "left undone: the theme says it is not done"
 """What is meant by the words of `ActedBeats.lines`."""
 RESTS: Final = re.compile(
     r"(?:(?:takes?|took|has|have|had) )?an? (?:\w+ )?(?:nap|sleep|doze|snooze|siesta|lie-down|rest)\b"
@@ -156,8 +156,14 @@ class ActedBeats:
             ),
             *(f"told, not acted: {one.beat.text} ({one.why})" for one in self.told if one.why and not one.stood_for),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
-            *([] if plain else [LEGEND]),
+            *([] if plain else self._meanings()),
         ]
+
+    def _meanings(self) -> list[str]:
+        """What the words that come up mean, a line each."""
+        unshown = self.missing or any(one.acted and one.unshown for one in self.outcomes)
+        told = {ACTED: self.acted, STANDS: self.stood_for, NOT_SHOWN: unshown, LEFT_UNDONE: self.undone}
+        return [meaning for meaning, there in told.items() if there]
 
     def to_dict(self) -> Json:
         """Plain values for JSON."""

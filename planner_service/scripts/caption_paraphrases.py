@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 import prompts
 from motion_backend.motion import RISINGS, Skill
@@ -42,16 +42,12 @@ _MOTIONS: Final = {
 class Phrases(BaseModel):
     """Other words for one caption, as a model writes them."""
 
-    model_config = ConfigDict(extra="ignore")
-
     number: int
     phrases: list[str]
 
 
 class Phrasings(BaseModel):
     """The answer to `prompts/rephrase_captions.md`."""
-
-    model_config = ConfigDict(extra="ignore")
 
     captions: list[Phrases]
 

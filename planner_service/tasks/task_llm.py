@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import Final, get_args
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 import prompts
 from motion_backend.planners.markov_planner import Category, Hand
@@ -22,11 +22,7 @@ _SHOWN: Final = 80
 """Kinds of furniture that the model is told of."""
 
 
-class _Answer(BaseModel):
-    model_config = ConfigDict(extra="ignore")
-
-
-class TaskStep(_Answer):
+class TaskStep(BaseModel):
     """One step as a model writes it."""
 
     step: str
@@ -36,7 +32,7 @@ class TaskStep(_Answer):
     object: str | None = None
 
 
-class TaskSteps(_Answer):
+class TaskSteps(BaseModel):
     """The answer to `prompts/plan_task.md`."""
 
     steps: list[TaskStep]

@@ -19,44 +19,32 @@ Words = Annotated[frozenset[str], BeforeValidator(lambda words: frozenset(words.
 
 @table
 class EnglishGrammar:
-    """data/english_grammar.toml: words that tell one clause from the next."""
+    """data/english_grammar.toml: words that tell one clause from the next; what each list is for stands there."""
 
     subjects: Words
-    """What does something, in one word."""
     marks: Words
-    """What stands before a noun."""
     numbers: Words
     times: Words
-    """Words that tell when, and nothing more."""
     prepositions: Words
     adverbs: Words
     joints: Words
     earlier: Words
-    """Joints after which stands what happened first."""
     with_gerund: Words
-    """Joints that deny the gerund after them."""
     aspects: Words
-    """Verbs that only say how the deed of the next verb is done."""
     postures: Words
-    """Verbs beside which a second deed stands without a joint."""
     denials: Words
     refusals: Words
-    """Verbs that deny the deed after them."""
     wishes: Words
-    """Verbs that only wish for the deed after them."""
     not_verbs_after_to: Words
     be: Words
     have: Words
     do: Words
     modals: Words
     never_verbs: Words
-    """What the dictionary knows as verbs too, and themes hardly ever mean so."""
     more_verbs: Words
-    """Verbs that the dictionary does not know."""
     slang: dict[str, str]
     contractions: dict[str, str]
     rewrites: tuple[tuple[str, str], ...]
-    """Patterns of whole words, and what is read in their place."""
 
     @cached_property
     def auxiliaries(self) -> frozenset[str]:

@@ -97,19 +97,29 @@ export async function holding(worker, act) {
 /** A rectangle of the window as a PNG in base64. */
 export const shoot = async (page, clip) => (await page.screenshot({ clip })).toString("base64");
 
+/** Milliseconds without a picture after which none comes: one that stays is drawn once more, with all its points. */
+const QUIET = 1200;
+
 /** Wait until nothing is drawn any more; walls, light and camera go there at once, as for who wants it still. */
 export async function settle(page) {
   await page.emulateMedia({ reducedMotion: "reduce" });
-  await page.evaluate(async (patience) => {
+  await still(page, 0);
+  await page.emulateMedia({ reducedMotion: "no-preference" });
+  await still(page, QUIET);
+}
+
+/** Wait for five frames without a new picture, and for so many milliseconds. */
+async function still(page, quiet) {
+  await page.evaluate(async ([patience, milliseconds]) => {
     const deadline = performance.now() + patience;
-    for (let [last, still] = [-1, 0]; still < 5; ) {
+    for (let [last, still, since] = [-1, 0, performance.now()]; still < 5 || performance.now() - since < milliseconds; ) {
       if (performance.now() > deadline) throw new Error("the picture does not come to rest");
       await new Promise(requestAnimationFrame);
       const { pictures } = window.sims.state();
+      if (pictures !== last) since = performance.now();
       [last, still] = [pictures, pictures === last ? still + 1 : 0];
     }
-  }, PATIENCE);
-  await page.emulateMedia({ reducedMotion: "no-preference" });
+  }, [PATIENCE, quiet]);
 }
 
 /** Of pictures of one size: the colours of the first, to 32 steps a channel, and the share of pixels in which each differs from it. */

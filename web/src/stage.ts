@@ -22,6 +22,8 @@ export { warmUp };
 const LONG = 0.05;
 const COARSER = 0.6;
 const COARSEST = 0.4;
+/** Seconds after which a picture counts as one that stays. */
+const RESTS = 0.5;
 
 /** Colours and strengths that the page chooses. */
 export interface Mood {
@@ -58,6 +60,9 @@ export class Stage {
   #heading = 0;
   #slow = 0;
   #sharpness = 1;
+  /** Seconds without a new picture, and whether the last one has all its points though others are drawn with fewer. */
+  #rest = 0;
+  #sharp = false;
 
   /** Throws where the browser has no WebGL. */
   constructor(holder: HTMLElement) {
@@ -166,7 +171,7 @@ export class Stage {
 
   resize(width: number, height: number): void {
     if (!width || !height) return;
-    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * this.#sharpness);
+    this.#renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * (this.#sharp ? 1 : this.#sharpness));
     this.#renderer.setSize(width, height);
     this.cameraMan.resize(width, height);
     // Another size empties the canvas, and it would be shown so until the next picture; before there is a home the
@@ -185,8 +190,13 @@ export class Stage {
     if (this.#fading?.update(eye, this.#body, pace)) this.dirty = true;
     if (this.#lighting.drift(this.cameraMan.calm ? Infinity : step)) this.dirty = true;
     if (this.#face?.update(playing ? step : 0, this.emotion, this.asleep, this.cameraMan.calm || !playing)) this.dirty = true;
-    if (!this.dirty) return;
-    this.#draw();
+    if (!this.dirty) {
+      if (!playing) this.#refine(seconds);
+      return;
+    }
+    this.#rest = 0;
+    if (this.#sharp) this.#redraw(false);
+    else this.#draw();
     this.#watch(seconds);
   }
 
@@ -195,6 +205,18 @@ export class Stage {
     this.dirty = false;
     this.#lighting.aim(this.#chest);
     this.#renderer.render(this.#scene, this.cameraMan.camera);
+  }
+
+  /** A picture that stays has all its points, however long it takes. */
+  #refine(seconds: number): void {
+    if (this.#sharpness === 1 || this.#sharp || !this.#home) return;
+    this.#rest += seconds;
+    if (this.cameraMan.calm || this.#rest > RESTS) this.#redraw(true);
+  }
+
+  #redraw(sharp: boolean): void {
+    this.#sharp = sharp;
+    this.resize(this.canvas.clientWidth, this.canvas.clientHeight);
   }
 
   /** Fewer points where pictures take long, and fewer still where that did not help: software draws a few a second. */

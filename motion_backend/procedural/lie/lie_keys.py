@@ -383,10 +383,12 @@ class Pushing:
 
 @table
 class Stood:
-    """Standing."""
+    """Standing, and how far the pelvis is over the right foot, and lower, until the left one is down beside it."""
 
     name: Literal["stood"]
     wait_s: float
+    aside_m: float
+    down_m: float
 
 
 @table

@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.body.capsules import SOLE
 from motion_backend.inverse_kinematics import two_bone
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays
@@ -53,12 +54,13 @@ TURNED: Final = 0.85
 """In which share of its step a foot turns, while it is nearer to the toes it stands on behind."""
 KNEES_DOWN, KNEES_OUT = 0.34, 0.30
 """From where the pelvis will lie to the middle of the knees: towards the feet, and out (metres at 1.70 m)."""
-SHIN_OUT, SHIN_UP = 0.30, 0.16
-"""How far out and up the left shin points from its knee when the body is down beside it, against down the mat."""
 LANDS: Final = 0.2
-"""So many seconds before the right foot is down the weight begins to leave the left knee."""
+"""So many seconds before a foot is down the weight begins to leave the knee, or the foot, that carries it."""
 ON_THIGH, OVER_THIGH, FINGERS_IN = 0.25, 0.120, 0.5
 """A wrist on its thigh: from the hip along it, over its middle (metres at 1.70 m), fingers turned in (radians)."""
+OVER_FLOOR, MOVES, COMES_UP = 0.065, 0.15, 4
+"""How high over the floor soles are (metres at 1.70 m) of feet that move as fast as that (m/s), and in how many frames
+they come up and go down."""
 ON_SIDE: Final = Lying(side="left", legs="gathered", arms=("tucked", "before"))
 """How one comes onto the floor, and leaves it: with the left side down."""
 
@@ -105,12 +107,6 @@ class Mat:
         )
 
     @property
-    def ankle_aside(self) -> Array:
-        """Where the left ankle is when the body has gone down beside that knee. (3,)."""
-        away = rotations.normalize(-self.up - SHIN_OUT * self.out + SHIN_UP * UP)
-        return np.asarray(self.knees[0] + SHANK * self.skeleton.scale * away)
-
-    @property
     def standing_point(self) -> tuple[float, float]:
         """[x, z] of the pelvis standing before and after."""
         x, _, z = self.knees.mean(axis=0) + AHEAD * self.skeleton.scale * self.up
@@ -137,12 +133,13 @@ def kneel_up(knelt: Pose, mat: Mat, bearing: Bearing, keys: RiseFromFloor) -> Po
     half = _on_one_knee(one, end, knelt, mat)
     pushing = _pushing(push, half, mat)
     left, end = replace(_over_one_knee(over, knelt, mat), reach=half.reach), replace(end, reach=pushing.reach)
-    begun, lifted, *later = _times((over, one, push, stood), pace)
-    lands = _seconds(keys.right_step, pace)[1] - LANDS * pace
-    left = _bound_for(half, left)
+    begun, lifted, risen, pushed, ends = _times((over, one, push, stood), pace)
+    lands, both = (_seconds(step, pace)[1] - LANDS * pace for step in (keys.right_step, keys.left_step))
+    left, end = _bound_for(half, left), _bound_for(pushing, end)
     landing = replace(left, knees=np.stack([left.knees[0], half.knees[1]]))
-    poses = [_bound_for(half, knelt), left, landing, half, pushing, _bound_for(pushing, end)]
-    up = interpolate([begun, lifted, lands, *later], poses, FPS)
+    over_right = replace(end, pelvis=end.pelvis + mat.skeleton.scale * (stood.aside_m * mat.out - stood.down_m * UP))
+    poses = [_bound_for(half, knelt), left, landing, half, pushing, over_right, end]
+    up = interpolate([begun, lifted, lands, risen, pushed, both, ends], poses, FPS)
     up = _step(up, 1, _seconds(keys.right_step, pace), half, mat)
     return _step(up, 0, _seconds(keys.left_step, pace), end, mat)
 
@@ -178,7 +175,7 @@ def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying, keys: LieKeys) -> P
     poses = [replace(pose, reach=hip.reach) for pose in (*poses, *lifted, end)]
     poses = [replace(knelt, reach=hands.reach, palms=hands.palms), back, hands, hip, *poses]
     times = np.cumsum([0.0, *waits]) / style.bearing.tempo
-    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[3:5], mat)
+    return _on_the_knee(_feet_lifted(interpolate(times.tolist(), poses, FPS), mat), times[3:5], mat)
 
 
 def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pose:
@@ -201,7 +198,7 @@ def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pos
         *(row.wait_s for row in (first, second, third, fourth)),
     ]
     times = np.cumsum([0.0, *waits]) / bearing.tempo
-    return _on_the_knee(interpolate(times.tolist(), poses, FPS), times[-4:-6:-1], mat)
+    return _on_the_knee(_feet_lifted(interpolate(times.tolist(), poses, FPS), mat), times[-4:-6:-1], mat)
 
 
 def _on_both_knees(row: BothKnees, pose: Pose, mat: Mat) -> Pose:
@@ -300,7 +297,8 @@ def _sat_back(row: SatBack, hands: Pose, mat: Mat) -> Pose:
 
 
 def _on_the_hip(row: OnHip, hands: Pose, side: Pose, mat: Mat) -> Pose:
-    """Half-way between hands and knees and lying on the side: the left hip nearly down, both hands bearing."""
+    """Half-way between hands and knees and lying on the side: the left hip nearly down, both hands and the left foot,
+    which stays where it is, bearing."""
     scale, floor = mat.skeleton.scale, mat.bed.pelvis * [1.0, 0.0, 1.0]
     right_ankle = 0.5 * (hands.ankles[1] + side.ankles[1]) + row.right_ankle_up_m * UP
     return replace(
@@ -309,12 +307,12 @@ def _on_the_hip(row: OnHip, hands: Pose, side: Pose, mat: Mat) -> Pose:
         hips=rotations.slerp(hands.hips, side.hips, 0.5),
         spine=bend(row.spine_pitch_rad, side=row.spine_side_rad),
         head=bend(row.head_pitch_rad),
-        ankles=np.stack([mat.ankle_aside, right_ankle]),
-        feet=rotations.slerp(hands.feet, side.feet, 0.5),
-        toes=np.full(2, row.toes_bend_rad),
+        ankles=np.stack([hands.ankles[0], right_ankle]),
+        feet=np.stack([hands.feet[0], rotations.slerp(hands.feet[1], side.feet[1], 0.5)]),
+        toes=np.array([hands.toes[0], row.toes_bend_rad]),
         knees=0.5 * (hands.knees + side.knees),
         elbows=np.array([row.left_elbow_direction, row.right_elbow_direction]),
-        planted=np.zeros(2),
+        planted=np.array([1.0, 0.0]),
     )
 
 
@@ -355,6 +353,23 @@ def _step(pose: Pose, index: int, seconds: tuple[float, float], end: Pose, mat: 
     return replace(pose, ankles=ankles, feet=feet, planted=planted)
 
 
+def _feet_lifted(pose: Pose, mat: Mat) -> Pose:
+    """Feet off the floor while they move, so that none is drawn over it."""
+    scale = mat.skeleton.scale
+    soles = pose.ankles[:, :, None] + rotations.rotate(pose.feet[:, :, None], SOLE * scale)
+    speed = np.linalg.norm(np.gradient(pose.ankles, axis=0)[..., [0, 2]], axis=-1) * FPS
+    needed = OVER_FLOOR * scale * smooth(speed / MOVES) - soles[..., 1].min(axis=-1)
+    ankles, frames = pose.ankles.copy(), np.arange(len(pose))
+    # What comes before and after has feet where the first and the last pose have them.
+    inside = smooth(np.minimum(frames, frames[::-1]) / (2 * COMES_UP))
+    bell = np.hanning(2 * COMES_UP + 3)[1:-1]
+    for index in (0, 1):
+        some = np.pad(np.where(pose.planted[:, index] > 0, 0.0, np.maximum(needed[:, index], 0.0)), 2 * COMES_UP)
+        most = np.lib.stride_tricks.sliding_window_view(some, 2 * COMES_UP + 1).max(axis=1)
+        ankles[:, index, 1] += inside * np.convolve(most, bell / bell.sum(), "valid")
+    return replace(pose, ankles=ankles)
+
+
 def _on_the_knee(pose: Pose, times: Array, mat: Mat) -> Pose:
     """The left knee on its place, where the body goes down over it or up: hips turn round it.
 
@@ -366,6 +381,9 @@ def _on_the_knee(pose: Pose, times: Array, mat: Mat) -> Pose:
     joint = pose.pelvis + HIP * mat.skeleton.scale * rotations.rotate(pose.hips, np.array([1.0, 0.0, 0.0]))
     thigh = joint - mat.knees[0]
     length = np.linalg.norm(thigh, axis=1, keepdims=True)
-    knees = pose.knees.copy()
+    knees, ankles = pose.knees.copy(), pose.ankles.copy()
     knees[:, 0] += share * (-thigh / length - knees[:, 0])
-    return replace(pose, pelvis=pose.pelvis + share * (THIGH * mat.skeleton.scale / length - 1) * thigh, knees=knees)
+    shank = rotations.normalize(ankles[:, 0] - mat.knees[0]) * SHANK * mat.skeleton.scale
+    ankles[:, 0] += share * (mat.knees[0] + shank - ankles[:, 0])
+    pelvis = pose.pelvis + share * (THIGH * mat.skeleton.scale / length - 1) * thigh
+    return replace(pose, pelvis=pelvis, knees=knees, ankles=ankles)

@@ -188,7 +188,8 @@ def test_getting_up_from_the_floor_is_looked_farther_ahead_and_the_pelvis_comes_
     data, reader = tracker._scratch()
     found = [Controller(empty_room(), data, tracker.reference, reader)._prices(at) for at in (0, 4)]
     assert (found[1][:6] > found[0][:6]).all()
-    np.testing.assert_array_equal(found[1][6:36], found[0][6:36])
+    arms = [joint.qvel for joint in SIMULATED if joint.name.endswith(("shoulder", "elbow", "trunk", "neck"))]
+    np.testing.assert_array_equal(found[1][arms], found[0][arms])
 
 
 def prices(plan: Plan, at: int) -> np.ndarray:
@@ -206,7 +207,7 @@ def test_the_pelvis_comes_first_on_the_way_down_to_lie_as_on_the_way_up() -> Non
     ups = (Doing.LIES, Doing.RISES, Doing.STANDS_UP, Doing.GOES_DOWN, Doing.OTHER)
     lies, rises, stands_up, goes_down, does = (prices(all_along(plan, one), 4) for one in ups)
     np.testing.assert_array_equal(lies, rises)
-    np.testing.assert_array_equal(lies, stands_up)
+    np.testing.assert_array_equal(lies[:6], stands_up[:6])
     assert (lies[:6] > goes_down[:6]).all()
     assert (goes_down[:6] > does[:6]).all()
 
@@ -236,6 +237,10 @@ def test_the_leg_that_swings_is_to_be_where_it_is_planned_and_the_one_that_stand
         assert walks[legs[1 - swings]] == does[legs[1 - swings]]
         assert walks[1] > does[1]
         np.testing.assert_array_equal(walks[[0, 2, 3, 4, 5]], does[[0, 2, 3, 4, 5]])
+        for doing, other in ((Doing.GOES_DOWN, Doing.LIES), (Doing.STANDS_UP, Doing.RISES)):
+            kneels, lies = prices(all_along(plan, doing), at), prices(all_along(plan, other), at)
+            assert kneels[knee] > kneels[legs[1 - swings]]
+            assert lies[knee] == lies[legs[1 - swings]] > does[knee]
     both = int(np.flatnonzero(stands.all(axis=1))[0])
     assert (prices(all_along(plan, Doing.WALKS), both) != prices(all_along(plan, Doing.OTHER), both)).sum() == 1
 

@@ -22,10 +22,11 @@ def standing(across: float, up: float = 0.0) -> Array:
 
 
 def joints_under(joints: Array) -> int:
-    """How many joints the title lies on in the place that is chosen."""
+    """How many joints the title lies on in the place that is chosen, until it goes."""
     shot = FilmShot(0, len(joints), CAMERA, ())
-    left, top, right, bottom = title_place(WORDS, SIZE, [shot], joints).box(WORDS, SIZE)
-    x, y, _ = np.moveaxis(CAMERA.project(CAMERA.view(joints), SIZE), -1, 0)
+    place, clear = title_place(WORDS, SIZE, [shot], joints)
+    left, top, right, bottom = place.box(WORDS, SIZE)
+    x, y, _ = np.moveaxis(CAMERA.project(CAMERA.view(joints[:clear]), SIZE), -1, 0)
     return int(np.count_nonzero((x > left) & (x < right) & (y > top) & (y < bottom)))
 
 
@@ -43,7 +44,13 @@ def test_who_walks_through_the_picture_is_not_under_it_either() -> None:
 def test_only_pictures_with_the_title_count() -> None:
     late = FilmShot(20, 60, CAMERA, ())
     first = FilmShot(0, 20, orbit((50.0, 1.0, 0.0), 4.0, 0.0, 0.1), ())
-    assert title_place(WORDS, SIZE, [first, late], standing(-1.2)) is PLACES[0]
+    assert title_place(WORDS, SIZE, [first, late], standing(-1.2)) == (PLACES[0], 20)
+
+
+def test_a_title_goes_when_somebody_comes_to_wherever_it_is() -> None:
+    crowd = np.concatenate([standing(across)[:1] for across in [*np.linspace(1.7, -1.7, 60)]])
+    _, clear = title_place(WORDS, SIZE, [FilmShot(0, 60, CAMERA, ())], crowd)
+    assert 20 < clear < 60, "who crosses the whole picture comes everywhere"
 
 
 @pytest.mark.parametrize("place", PLACES)

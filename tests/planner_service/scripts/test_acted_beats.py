@@ -10,8 +10,10 @@ from hypothesis import strategies as st
 
 from motion_backend.motion import Emotion, Skill
 from planner_service.scripts.acted_beats import (
+    ACTED,
     IN_ITS_PLACE,
-    LEGEND,
+    LEFT_UNDONE,
+    NOT_SHOWN,
     Shot,
     acted_beats,
     connects,
@@ -164,8 +166,8 @@ def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() 
         "1 of 2 beats of your theme are acted; 25% of the screen time shows none of these",
         "not acted: reads (no keyframe is left that shows it)",
         "left undone, as asked: eats no supper",
-        LEGEND,
-    ]
+        *(ACTED, NOT_SHOWN, LEFT_UNDONE),
+    ], "each word that comes up is explained, on a line of its own"
     told = found.to_dict()
     assert (told["beats_asked"], told["beats_acted"], told["screen_time_without_beat"]) == (2, 1, 0.25)
     assert [(one["text"], one["acted"]) for one in told["beats"]] == [

@@ -18,7 +18,7 @@ from motion_backend.body.capsules import placed
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.segment_masses import centres_of_mass
 from motion_backend.body.self_collision import self_penetration
-from motion_backend.metrics.foot_skate import skate_ratio
+from motion_backend.metrics.foot_skate import skate_ratio, support_slip
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import FPS, Action, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.lie.lie_pose import Bed, place_to_lie
@@ -240,7 +240,23 @@ def test_feet_do_not_slide_on_the_way_down_and_up() -> None:
     lies, rises = during(down, PhaseKind.EDGE, PhaseKind.LIEDOWN), during(up, PhaseKind.GETUP, PhaseKind.STANDUP)
     last_step = round(TAILS[PartKind.WALK, PartKind.LIE] * FPS)
     for motion, frames in ((down, slice(lies.start + last_step, lies.stop)), (up, rises)):
-        assert skate_ratio(Kinematics.of(motion.part(frames.start, frames.stop))) <= 0.02
+        body = Kinematics.of(motion.part(frames.start, frames.stop))
+        assert skate_ratio(body) <= 0.02
+        assert support_slip(body) < 1.0, "feet are drawn over the floor"
+
+
+def test_who_stands_up_from_the_knees_is_over_the_right_foot_until_the_left_one_is_down() -> None:
+    motion = up_again("lying still", "get up slowly")
+    frames = during(motion, PhaseKind.STANDUP)
+    body = Kinematics.of(motion.part(frames.start, frames.stop))
+    alone = (body.motion.contacts.reshape(-1, 2, 2).max(axis=2) > 0.5) @ [1, 2] == 2
+    alone &= body.positions[:, 0, 1] > 0.5
+    assert alone.sum() > 10
+    centre = centres_of_mass(motion.skeleton, body.positions, body.world)[alone]
+    soles = body.soles[alone, 1]
+    across = soles[:, 2] - soles[:, 3]
+    aside = ((centre - soles[:, 2:].mean(axis=1)) * across)[:, [0, 2]].sum(axis=1) / np.linalg.norm(across, axis=1)
+    assert np.abs(aside).max() < 0.06
 
 
 @pytest.mark.parametrize("turned", [0.0, 2.0])

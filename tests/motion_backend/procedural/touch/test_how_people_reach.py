@@ -133,3 +133,10 @@ def test_who_touches_at_hand_height_steps_up_to_it_and_hardly_bends() -> None:
         assert body.lean(body.facing)[held(body, hand)].mean() < 30
         body = touched(*REACHES[1], hand=hand)
         assert body.lean(body.facing)[held(body, hand)].mean() < 15
+
+
+def test_no_elbow_snaps_as_the_body_rises_from_what_is_low() -> None:
+    for hand in HANDS:
+        body = touched("shelf", "low", "touch low height", hand=hand)
+        changes = np.linalg.norm(np.diff(body.at(f"{hand}_elbow").astype(np.float64), n=2, axis=0), axis=1) * FPS
+        assert changes.max() < 0.4

@@ -236,3 +236,39 @@ def test_a_way_however_short_is_ended_facing_what_it_is_to_face(length: float) -
         assert abs(rotations.wrap(route.heading[-1] - ends)) < 0.01
         assert abs(rotations.wrap(route.heading[0] - begins)) < 0.15
         np.testing.assert_allclose(route.position[-1], path[-1], atol=1e-6)
+
+
+def test_who_turns_off_out_of_a_run_hurries_so_that_no_foot_left_behind_holds_the_body_down() -> None:
+    ran, _, stride = two_walks("out of a run")
+    on, off = (np.array([np.sin(yaw), np.cos(yaw)]) for yaw in (stride.heading, stride.heading + np.radians(60)))
+    way = np.stack([stride.place, stride.place + 0.6 * on, stride.place + 0.6 * on + LENGTH * off])
+    style, start = walk_style(Emotion.NEUTRAL, "marching with swinging arms"), ran.at(len(ran) - 1)
+    went, *_ = walk_on(start, way, None, style, SKELETON, np.random.default_rng(2), stride)
+    assert went.pelvis[:, 1].min() > 0.78 * SKELETON.standing_height
+
+
+def test_arms_held_out_come_down_where_a_wall_is_and_nowhere_else() -> None:
+    style = walk_style(Emotion.NEUTRAL, "walk excitedly with arms opened")
+    way, start = np.array([[0.0, 0.0], [0.0, 4.0]]), standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+
+    def hands(wall: float) -> np.ndarray:
+        seed = np.random.default_rng(0)
+        went, *_ = walk_on(start, way, None, style, SKELETON, seed, depth=lambda points: points[:, 0] - wall)
+        positions, _ = SKELETON.forward_kinematics(*solve(went, SKELETON))
+        return np.stack([positions[:, INDEX[f"{side}_wrist"], 0] for side in ("left", "right")])
+
+    free, beside = hands(9.0), hands(0.5)
+    assert free[0].max() > 0.6
+    assert beside[0].max() < 0.45
+    assert beside[1].min() == pytest.approx(free[1].min(), abs=0.02)
+
+
+def test_who_dances_goes_on_while_turning_round() -> None:
+    style = walk_style(Emotion.NEUTRAL, "dancing steps, arms swinging")
+    way, start = np.array([[0.0, 0.0], [0.0, 4.0]]), standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+    went, *_ = walk_on(start, way, None, style, SKELETON, np.random.default_rng(0))
+    yaw = np.unwrap(2 * np.arctan2(went.hips[:, 1], went.hips[:, 3]))
+    round_it = (yaw > yaw[0] + 0.5) & (yaw < yaw[0] + 2 * np.pi - 0.5)
+    assert yaw[-1] - yaw[0] == pytest.approx(2 * np.pi, abs=0.3)
+    assert went.pelvis[round_it][-1, 2] - went.pelvis[round_it][0, 2] > 0.5
+    assert went.pelvis[-1, 2] == pytest.approx(4.0, abs=0.1)
