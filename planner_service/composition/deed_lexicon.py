@@ -45,6 +45,11 @@ _GROUND: Final = re.compile(r"\b(?:floor|floorboards?|(?:hearth)?rugs?|carpets?|
 _UNDER_IT: Final = re.compile(r"\b(?:under|beneath|underneath|below) (?:the|an?|his|her|their|my|every|each)\b")
 _GOAL: Final = re.compile(r"\b(?:over|on|onto|into|in|inside|under|against|behind|beneath|beside) ((?:\w+ ?){1,4})")
 """Where something is put."""
+_BEFORE_A_PICTURE: Final = re.compile(
+    r"\b(?:before|in front of|at|by) (?:the|an?|his|her|their|my) (?:\w+ ){0,2}"
+    r"(?:photo\w*|portrait|picture|painting|poster)\b"
+)
+"""Where one stands who looks at a picture."""
 _BROUGHT_TO: Final = re.compile(r"\b(?:to|into|onto|towards?) ((?:\w+ ?){1,4})")
 """Where a way leads: "drags the chair | to the desk"."""
 _LOW: Final = ("touch low height with the right hand", "touch low height")
@@ -219,6 +224,8 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     if need is None:
         goals = [piece for place in _BROUGHT_TO.findall(clause.text) for piece in pieces_in(place)]
         pieces = [piece for piece in goals or named if furniture.affordances(piece)]
+        if not pieces and _BEFORE_A_PICTURE.search(clause.text):
+            pieces = ["picture"]
         return Deed(found, skill, tuple(pieces or found.at), bool(pieces))
     if skill is Skill.TOUCH:
         return _touched(clause, about, found, named)

@@ -103,6 +103,7 @@ _THINGS: Final = re.compile(
 )
 """What begins so is done by a thing, or by nobody: "the latch clicks"."""
 
+_SMILES: Final = ("smile", "grin", "beam", "smirk")
 _NOBODY: Final = frozenset(("no", "nobody", "nothing", "none", "neither", "few", "hardly"))
 """What is done by these is not done."""
 _WHEN: Final = re.compile(
@@ -210,6 +211,8 @@ class DeedReader:
     def heard(self, one: ReadBeat) -> ReadBeat:
         """A beat with what the rules of reading have not understood of it: that it is done, or a mood it shows."""
         likely = self.likely(one.clause) if one.beat.kind in ("deed", "feeling", "other") else None
+        if one.beat.kind == "deed" and one.clause.verb in _SMILES:  # seen in a face
+            return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
         told = deed_of(one.clause) if one.beat.kind == "deed" else None
         if likely is None or (told is not None and told.is_gesture):
             return one

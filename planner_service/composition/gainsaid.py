@@ -16,7 +16,7 @@ from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
 
 _THE: Final = r"(?:the|an?|his|her|their|my|its|every|each) "
-_HIDDEN: Final = re.compile(rf"\b(?:under|underneath|beneath|below|behind) ({_THE}(?:\w+ ?){{1,3}})")
+_HIDDEN: Final = re.compile(rf"\b(under|underneath|beneath|below|behind) ({_THE}(?:\w+ ?){{1,3}})")
 """Where a body or a hand is that a keyframe has on a piece, or before it."""
 _INSIDE: Final = re.compile(rf"\b(?:into|inside|in) ({_THE}(?:\w+ ?){{1,2}})")
 _ON_IT: Final = re.compile(rf"\b(?:on|onto|on top of|upon) ({_THE}(?:\w+ ?){{1,2}})")
@@ -37,9 +37,9 @@ def _is_another_place(clause: Clause, keyframe: Keyframe) -> bool:
     """Whether it is told to be under, behind or in a piece, or standing on it."""
     seated = keyframe.skill is Skill.SITDOWN
     lain = keyframe.skill is Skill.LIEDOWN
-    hidden = [piece for place in _HIDDEN.findall(clause.text) for piece in pieces_in(place)]
+    hidden = [(piece, how) for how, place in _HIDDEN.findall(clause.text) for piece in pieces_in(place)]
     covered = lain and any(word in things_called("bedding") for word in clause.lemmas)  # "under the bed covers"
-    if any(not (seated and not affords(piece, "sit")) for piece in hidden) and not covered:
+    if any(not (seated and how == "behind" and not affords(piece, "sit")) for piece, how in hidden) and not covered:
         return True  # but one sits behind a desk
     if clause.verb in theme_words()["entering_verbs"] and (hidden or _INSIDE.search(clause.text)):
         inside = [piece for place in _INSIDE.findall(clause.text) for piece in pieces_in(place)]

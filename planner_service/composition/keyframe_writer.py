@@ -373,8 +373,9 @@ class KeyframeWriter:
                 self.body.show(index)
                 return
             caption = others[0]
-        if deed.is_gesture and not deed.row.walks and piece != "floor":  # gone to, then done there
-            if not self.body.is_there(piece, read.room):
+        if deed.is_gesture and not deed.row.walks:  # gone to, then done there
+            elsewhere = bool(self.keyframes) and read.room not in (None, self.body.room)
+            if elsewhere if piece == "floor" else not self.body.is_there(piece, read.room):
                 self.body.put(index, Skill.LOCO, mood, usual(Skill.LOCO, mood), piece, read.room)
             piece = "floor"
         self.body.put(index, Skill.LOCO, mood, caption, piece, read.room)
@@ -404,8 +405,10 @@ class KeyframeWriter:
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
             self.body.put(index, last.skill, mood, caption, last.furniture, last.room)
             self.body.resting = self.keyframes[-1]
-        else:
-            self.body.put(index, Skill.LOCO, mood, walk_of(mood), "floor", beats[index].room)
+        else:  # a face shows who smiles or sighs
+            face = beats[index].clause.verb in EXPRESSIONS and mood is not Emotion.ANGRY
+            caption = "stand still" if face else walk_of(mood)
+            self.body.put(index, Skill.LOCO, mood, caption, "floor", beats[index].room)
             self.body.resting = None
 
     def _add(

@@ -22,6 +22,9 @@ _FACE: Final = re.compile(
     re.IGNORECASE,
 )
 """What is done with face and voice alone."""
+_FALLS: Final = frozenset(
+    ("fall", "flop", "lie", "collapse", "drop", "land", "crash", "sink", "sleep", "roll", "throw")
+)
 _POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 
 
@@ -30,12 +33,21 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
     new = after.keyframes[len(before.keyframes) :]
     done = [one for one in new if not connects(one)] or new
     seated = before.resting is None and bool(done) and done[-1].skill in _POSTURES
+    if seated and deed.named and deed.skill is done[-1].skill is Skill.LIEDOWN and read.clause.verb in _FALLS:
+        return False  # "falls face down on the bed": on it all the same
     if seated and (is_gainsaid(read.clause, done) or read.clause.verb in EXPRESSIONS or _FACE.search(read.text)):
         return True  # "climbs on a chair" is no sitting on it; nobody sits down for a sigh
-    rises = before.resting is not None and (
-        bool(done) and (done[-1].skill not in _POSTURES or any(k.skill in RISINGS for k in new))
+    last = done[-1] if done else None
+    rises = (
+        before.resting is not None
+        and last is not None
+        and (
+            last.skill not in _POSTURES
+            or any(one.skill in RISINGS for one in new)
+            or last.furniture != before.resting.furniture
+        )
     )
-    if rises and deed.row.small:
+    if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, done))):
         return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False

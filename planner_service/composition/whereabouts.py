@@ -21,7 +21,9 @@ _SUPPORTS: Final = frozenset(("table", "closet", "shelf", "side", "media"))
 _IN_HAND: Final = frozenset(["hold", "clutch", "close", "shut", "fold", "unfold", "refold"])
 """What is so is done in the hands, where the thing is in them."""
 _HELD: Final = re.compile(
-    r"(?:holding|clutching|hugging|cradling|gripping|grasping|carrying|wearing|still holding)\b", re.IGNORECASE
+    r"(?:holding|clutching|hugging|cradling|gripping|grasping|carrying|wearing|still holding"
+    r"|lean(?:ing|s)? (?:heavily )?on (?:a|the|his|her|their) (?:\w+ )?(?:cane|stick|crutch\w*|walker|frame))\b",
+    re.IGNORECASE,
 )
 _WORN: Final = re.compile(
     r"\b(?:in|into|from|out of|inside) (?:(?:his|her|their|my|the|a|each|one) )?(?:\w+ ){0,2}pockets?\b", re.IGNORECASE

@@ -14,6 +14,10 @@ from planner_service.themes.verb_finder import tokens_of
 _NONE: Final = frozenset(("nothing", "nobody", "none", "no", "silence"))
 _FALLS: Final = frozenset(("rain", "snow", "hail", "sleet", "drizzle", "thunder"))
 """Weather that may be a verb too: "Rain all Sunday"."""
+_ALONE: Final = re.compile(
+    r"(?:is|was|am|are|were) (?:\w+ly |all |still )?(?:alone at home|home alone|alone)\b", re.IGNORECASE
+)
+"""How it is from the beginning, and nothing that is done: "is home alone"."""
 _ON_SOMEBODY: Final = re.compile(r"\b(?:on|in|around|under) (?:his|her|my) \w+", re.IGNORECASE)
 """Where things are that are no people: "they were on his head"."""
 _OF_AGE: Final = frozenset(
@@ -28,7 +32,7 @@ def tells_no_deed(clause: Clause) -> bool:
         return _is_when_or_none(clause)
     if clause.verb == "be" and clause.subject:
         of_things = clause.subject.lower() == "they" and _ON_SOMEBODY.search(clause.text) is not None
-        return of_things or _is_who(clause) or _is_age(clause)
+        return of_things or _is_who(clause) or _is_age(clause) or _ALONE.match(clause.text) is not None
     rest = clause.lemmas[1:2]
     return clause.verb == "have" and (not _NONE.isdisjoint(rest) or not grammar().numbers.isdisjoint(rest))
 
