@@ -35,7 +35,7 @@ MIN_STRETCH: Final = 0.2
 MAX_STRETCH: Final = 0.828
 STRETCH_STEP: Final = 0.005
 """How far ahead of the pelvis a stretched foot is tried, from afar (metres at 1.70 m); a leg is no longer either."""
-ON_HEEL: Final = 0.04
+ON_HEEL: Final = 0.016
 """How much higher the ankle of a stretched leg is, on its heel, than that of a foot that stands (metres at 1.70 m)."""
 BENT: Final = 0.817
 """A leg that reaches less far than this is not straight (metres at 1.70 m): its knee has less than 156 degrees."""
