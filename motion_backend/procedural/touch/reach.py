@@ -108,8 +108,10 @@ def touch(
     way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
     whole = lifted_off(deed(way, keys), laid, skeleton)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
-    # A body on its way up takes the hand along before the arm is straight.
-    whole = replace(whole, knees=knees, reaching=whole.reaching**row.goes_along_power)
+    whole = replace(whole, knees=knees)
+    if not manner.prone:
+        # A body on its way up takes the hand along before the arm is straight.
+        whole = replace(whole, reaching=whole.reaching**row.goes_along_power)
     return settle_from(start, whole, FPS, seconds=row.settle_s)
 
 
