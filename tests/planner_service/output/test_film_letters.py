@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from motion_backend.rendering.film_picture import lay_words, split
-from planner_service.output.film import TEXT_HEIGHT, TITLE_END, TITLE_HEIGHT, WORDS_END
+from motion_backend.rendering.title_place import PLACES
+from planner_service.output.film import TEXT_HEIGHT, TITLE_HEIGHT, WORDS_END
 from planner_service.output.film_letters import lettered, titled
 
 SIZES = st.sampled_from([(96, 54), (320, 180), (180, 320), (1280, 720)])
@@ -15,11 +16,11 @@ WORDS = st.text(st.characters(), max_size=300)
 CLAUSE = "Sam walked listlessly over to the sofa and sat down wearily"
 
 
-def laid(letters: np.ndarray | None, size: tuple[int, int], bottom: float) -> np.ndarray:
+def laid(letters: np.ndarray | None, size: tuple[int, int], bottom: float, across: float = 0.5) -> np.ndarray:
     """How bright a grey picture is after words were laid on it."""
     planes = np.full((size[1] * 3 // 2, size[0]), 150, dtype=np.uint8)
     if letters is not None:
-        lay_words(planes, letters, bottom, 0.5)
+        lay_words(planes, letters, bottom, 0.5, across)
     return split(planes)[0]
 
 
@@ -28,7 +29,9 @@ def laid(letters: np.ndarray | None, size: tuple[int, int], bottom: float) -> np
 def test_any_title_fits_into_any_picture(title: str, size: tuple[int, int]) -> None:
     letters = titled(title, size, TITLE_HEIGHT)
     assert (letters is None) or (letters.shape[0] <= size[1] and letters.shape[1] <= size[0])
-    assert laid(letters, size, TITLE_END).shape == size[::-1]
+    for place in PLACES:
+        bottom = 0.5 if letters is None else place.box((letters.shape[0], letters.shape[1]), size)[3] / size[1]
+        assert laid(letters, size, bottom, place.across).shape == size[::-1]
     assert title.strip() or letters is None, "no band without words"
 
 
