@@ -23,20 +23,20 @@ SKIN: Final = 0.16
 
 @dataclass(frozen=True)
 class Place:
-    """Shares of a picture: how much of the free width is on the left of words, and where in its height they end."""
+    """How much of a picture's free width is on the left of words, of its free height above them: they always fit."""
 
     across: float
-    bottom: float
+    down: float
 
     def box(self, words: tuple[int, int], size: tuple[int, int]) -> tuple[float, float, float, float]:
         """Left, top, right and bottom of words (height, width), in pixels of a picture (width, height)."""
-        left, bottom = self.across * (size[0] - words[1]), self.bottom * size[1]
-        return left, bottom - words[0], left + words[1], bottom
+        left, top = self.across * (size[0] - words[1]), self.down * (size[1] - words[0])
+        return left, top, left + words[1], top + words[0]
 
 
 PLACES: Final = (
-    *(Place(across, 0.16) for across in (0.05, 0.95, 0.5)),
-    *(Place(across, bottom) for bottom in (0.45, 0.72) for across in (0.05, 0.95)),
+    *(Place(across, 0.04) for across in (0.05, 0.95, 0.5)),
+    *(Place(across, down) for down in (0.37, 0.68) for across in (0.05, 0.95)),
 )
 """The most wanted first."""
 

@@ -16,7 +16,7 @@ from motion_backend.formats.mp4 import write_mp4
 from motion_backend.rendering.film_frames import film_frames
 from motion_backend.rendering.film_picture import lay_words
 from motion_backend.rendering.film_shots import FilmShot, film_shots
-from motion_backend.rendering.title_place import PLACES, Place, title_place
+from motion_backend.rendering.title_place import Place, title_place
 from planner_service.output.film_letters import lettered, titled
 from planner_service.output.film_pages import subtitles
 from scene_graphs.errors import UserError
@@ -79,9 +79,10 @@ def write_film(
     motion, told = filmed.motion, filmed.told
     shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1], filmed.role)
     title = titled(told.title, size, TITLE_HEIGHT)
-    place, untitled = PLACES[0], 0
+    across, bottom, untitled = 0.0, 0.0, 0
     if title is not None:
         place, untitled, shots = _placed(title.shape, size, shots, motion)
+        across, bottom = place.across, place.box((title.shape[0], title.shape[1]), size)[3] / size[1]
     lines = subtitles(told, filmed.segments, motion.fps, round(FIRST_WORDS * motion.fps) if untitled else 0)
     words = [(line, lettered(line.lines, size, TEXT_HEIGHT)) for line in lines]
 
@@ -90,7 +91,7 @@ def write_film(
             if letters is not None and line.start <= frame < line.stop:
                 lay_words(picture, letters, WORDS_END, SHADE)
         if title is not None and frame < untitled:
-            lay_words(picture, title, place.bottom, SHADE, place.across)
+            lay_words(picture, title, bottom, SHADE, across)
         return picture
 
     def counted() -> Iterator[Planes]:
