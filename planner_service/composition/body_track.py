@@ -52,7 +52,7 @@ class BodyTrack:
     def stays(self, keyframe: PlannedKeyframe, room: str | None) -> bool:
         """Whether what a keyframe is done at is what the body sits on, or has just touched."""
         last = self.keyframes[-1] if self.keyframes else None
-        there = last is not None and last.furniture == keyframe.furniture and last.room in (None, room)
+        there = last is not None and last.furniture == keyframe.furniture and (room is None or last.room in (None, room))
         return last is not None and there and last.skill is keyframe.skill
 
     def is_there(self, piece: str, room: str | None) -> bool:
