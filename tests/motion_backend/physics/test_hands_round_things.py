@@ -58,9 +58,9 @@ def test_a_hand_is_drawn_back_from_a_board_that_it_swings_by_and_comes_to_rest_w
     nearer = board.inside(planned[:, wrist], 0)[quickest] - board.inside(led[:, wrist], 0)[quickest]
     assert nearer > 0.05
     height = planned[:, wrist, 1]
-    touches = (speeds(planned[:, wrist]) < 0.1) & (height > height.max() - 0.02)
+    touches = (speeds(planned[:, wrist]) < 0.05) & (height > height.max() - 0.02)
     assert touches.any()
-    np.testing.assert_allclose(led[touches], planned[touches], atol=1e-3)
+    np.testing.assert_allclose(led[touches], planned[touches], atol=2e-3)
     np.testing.assert_allclose(led[0], planned[0], atol=1e-5)
     assert speeds(led[:, wrist]).max() < 2 * speeds(planned[:, wrist]).max(), "the hand jumps"
 
