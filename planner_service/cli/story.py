@@ -14,6 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
 from motion_backend.backends import about
+from motion_backend.metrics.figure_limits import held_against
 from motion_backend.motion import Character
 from planner_service.cast_choice import told_look
 from planner_service.cli.cast_command import CharacterOption, character_given
@@ -250,11 +251,17 @@ def _slanted(told: Told, console: Console) -> Text:
 def _figures(report: dict[str, Any]) -> str:
     """How well it was done, in a sentence; all figures stand in report.json."""
     off = "" if report["contact_error"] is None else f" Seat, bed and hand are {_cm(report['contact_error'])} off."
+    missed = [one for one in held_against(report) if not one["kept"]]
+    over = "; ".join(f"{one['figure']} {one['value']:.3g} ({_bound(one)})" for one in missed)
     return (
         f"{report['reached']} of {report['keyframes']} moments were done, in {report['seconds']:.0f} s.{off} "
         f"The body is in furniture {100 * report['pen_share']:.1f} % of the time, and a foot that stands slips "
-        f"{report['slip']:.1f} cm a second."
+        f"{report['slip']:.1f} cm a second." + (f"\nMissed of its limits (docs/metrics.md): {over}." if over else "")
     )
+
+
+def _bound(limit: dict[str, Any]) -> str:
+    return f"at most {limit['most']:g}" if limit["most"] is not None else f"at least {limit['least']:g}"
 
 
 def _cm(metres: float) -> str:
