@@ -251,17 +251,15 @@ def _slanted(told: Told, console: Console) -> Text:
 def _figures(report: dict[str, Any]) -> str:
     """How well it was done, in a sentence; all figures stand in report.json."""
     off = "" if report["contact_error"] is None else f" Seat, bed and hand are {_cm(report['contact_error'])} off."
-    missed = [one for one in held_against(report) if not one["kept"]]
-    over = "; ".join(f"{one['figure']} {one['value']:.3g} ({_bound(one)})" for one in missed)
+    limits = held_against(report)
+    missed = ", ".join(one["figure"] for one in limits if not one["kept"])
+    kept = f"{sum(one['kept'] for one in limits)} of {len(limits)} limits are kept"
+    besides = f"\n{kept}; missed, see limits in report.json: {missed}" if missed else ""
     return (
         f"{report['reached']} of {report['keyframes']} moments were done, in {report['seconds']:.0f} s.{off} "
         f"The body is in furniture {100 * report['pen_share']:.1f} % of the time, and a foot that stands slips "
-        f"{report['slip']:.1f} cm a second." + (f"\nMissed of its limits (docs/metrics.md): {over}." if over else "")
+        f"{report['slip']:.1f} cm a second.{besides}"
     )
-
-
-def _bound(limit: dict[str, Any]) -> str:
-    return f"at most {limit['most']:g}" if limit["most"] is not None else f"at least {limit['least']:g}"
 
 
 def _cm(metres: float) -> str:
