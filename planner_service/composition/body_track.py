@@ -52,8 +52,9 @@ class BodyTrack:
     def stays(self, keyframe: PlannedKeyframe, room: str | None) -> bool:
         """Whether what a keyframe is done at is what the body sits on, or has just touched."""
         last = self.keyframes[-1] if self.keyframes else None
-        there = last is not None and last.furniture == keyframe.furniture and (room is None or last.room in (None, room))
-        return last is not None and there and last.skill is keyframe.skill
+        if last is None or (last.skill, last.furniture) != (keyframe.skill, keyframe.furniture):
+            return False
+        return room is None or last.room in (None, room)
 
     def is_there(self, piece: str, room: str | None) -> bool:
         """Whether the body has just walked to a piece; a walk to it in no certain room is then one in `room`."""
