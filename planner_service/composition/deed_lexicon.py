@@ -104,6 +104,8 @@ class DeedRow:
     """Whether who is on their feet already does it standing."""
     stands: bool = False
     """Whether its captions only stand for it."""
+    ends: tuple[str, ...] = ()
+    """Parts of captions in which the thing is in the hands: it ends what they do with it, "hangs up"."""
     why: str = ""
     """Why a body at home does not do it."""
     unless: tuple[str, ...] = ()

@@ -34,6 +34,7 @@ from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.protagonist import is_person
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
 from scene_graphs.furniture import categories_of
 
@@ -218,7 +219,7 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            if one.beat.who.split(" ")[0].lower() in _NOBODY:
+            if one.beat.who.split(" ")[0].lower() in _NOBODY or _sounds(one):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
@@ -300,6 +301,11 @@ def _whose(one: ReadBeat) -> str:
         return "a person"
     theirs = one.clause.verb and (one.clause.aside or _THINGS.match(one.text))
     return "a thing" if theirs else "nobody"
+
+
+def _sounds(one: ReadBeat) -> bool:
+    """Whether a thing is only heard: nobody answers a phone because it rings."""
+    return one.clause.verb in theme_words()["sounds"] and not is_person(one.beat.who)
 
 
 def _may_be(caption: tuple[Skill, str], never: Sequence[str], others: Sequence[str], clause: Clause) -> bool:

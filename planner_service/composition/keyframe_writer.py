@@ -19,11 +19,13 @@ from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.caption_senses import only_in, shows
 from planner_service.composition.deed_lexicon import (
     Deed,
+    DeedRow,
     deed_table,
     listed_places,
     names_things,
     pieces_in,
     room_of,
+    row_of,
     typical_of,
     where,
 )
@@ -160,6 +162,9 @@ class KeyframeWriter:
             self.why[index] = _not_acted(read)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
+        elif deed is not None and (row := self._ending(read)) is not None:
+            self.body.show(index)
+            self.deeds.update({index: replace(deed, row=row)} if row.stands else {})
         elif deed is not None:
             if self.body.resting is None:
                 deed = on_seat_ahead(deed, read, nexts, self.reader, self.places)
@@ -180,6 +185,12 @@ class KeyframeWriter:
             done = list(self.deeds.values())
             return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return self.reader.deed(clause, self._about)
+
+    def _ending(self, read: ReadBeat) -> DeedRow | None:
+        """The row of what ends what the hands are just seen doing: nobody goes anywhere to hang up, or close a book."""
+        row = row_of(read.clause, self._about)
+        last = "".join(one.caption for one in self.keyframes[-1:])
+        return row if row is not None and any(part in last for part in row.ends) else None
 
     def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
         """Keyframes that somebody else planned for a beat, of a short script where they are of one."""

@@ -65,7 +65,11 @@ def only_stands_for(resting: PlannedKeyframe, read: ReadBeat, deed: Deed, reader
 def dozing(resting: PlannedKeyframe | None, read: ReadBeat, reader: DeedReader) -> tuple[str, ...]:
     """Ways of sitting on what cannot be lain on that show what is else done lying: "nods off"."""
     likely = reader.likely(read.clause)
-    if resting is None or likely is None or resting.skill is not Skill.SITDOWN or affords(resting.furniture, "lie"):
+    if resting is None or resting.skill is not Skill.SITDOWN or affords(resting.furniture, "lie"):
+        return ()
+    if shows(Skill.SITDOWN, resting.caption, read.clause):
+        return (resting.caption,)  # who has their head on the desk falls asleep there
+    if likely is None:
         return ()
     return seated_as_well(likely)
 

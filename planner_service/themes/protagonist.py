@@ -162,14 +162,14 @@ def _pronouns_by(pattern: re.Pattern[str], text: str) -> str:
 
 def hero_of(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about, as it is written first: the narrator, else the person that its pronouns fit best."""
-    told = [clause for clause in clauses if clause.subject and not clause.aside]
+    pronoun = _told_most(clauses)
+    told = [one for one in clauses if one.subject and not (one.aside or (pronoun and _is_infant(one.subject)))]
     mains = [clause.subject for clause in told if clause.joint in _MAIN_JOINTS]
     if any(clause.subject.lower() == "i" for clause in told):
         return "I"
     if mains and mains[0].lower() == "you":
         return "you"
     people = [clause for clause in told if is_person(clause.subject)]
-    pronoun = _told_most(clauses)
     done = (one for one in clauses if not (one.aside or one.joint == "to" or (one.denied and not one.unable)))
     deeds = Counter(one.doer for one in done)
     first = min(((one.sentence, one.place) for one in people if _stands_for(one.subject)), default=(len(clauses), 0))
@@ -269,13 +269,13 @@ def _heroic(clause: Clause, pronoun: str) -> float:
     owned = first in OWNERS  # "her mum" is somebody else than she
     fits = 4 * bool(pronoun and own == pronoun and not owned)
     several = _is_plural(clause.subject)
-    small = head_of(clause.subject).lower() in {
-        "baby",
-        "infant",
-        "newborn",
-        *theme_words()["anybody"] - {"person", "character"},
-    }
+    nobody = head_of(clause.subject).lower() in theme_words()["anybody"] - {"person", "character"}
+    small = nobody or _is_infant(clause.subject)
     return fits - small - 2 * owned - (1 + bool(pronoun)) * several / 2 - (clause.joint in _ASIDE)
+
+
+def _is_infant(subject: str) -> bool:
+    return head_of(subject).lower() in theme_words()["infants"]
 
 
 def _may_live(subject: str) -> bool:

@@ -62,6 +62,8 @@ _WHAT_IT_IS: Final = re.compile(
     r"(?<=\w):\s+((?:an?|the|his|her|their|my|some|one|two|three) [\w'’ -]{1,40})(?=\s*[.!?]|\s*$)", re.MULTILINE
 )
 """What was meant before is named: "unwraps it: a birthday cake"."""
+_SO: Final = re.compile(r"\bso (\w+)(?= (?:he|she|they|I|his|her|their|my) )")
+"""What comes of how something is done: "laughs so hard | she has to sit down"."""
 _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
 
@@ -105,6 +107,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
     text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
+    text = _SO.sub(lambda one: f"{one[0]} that" if is_adjective(one[1].lower()) else one[0], text)
     text = _TITLE.sub(r"\1", text.replace("«", "“").replace("»", "”"))  # which stand for what is said below
 
     def kept(match: re.Match[str]) -> str:
