@@ -159,7 +159,8 @@ def _besides(
         return details_of(read.clause) if known else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
-    own = [one for one in own if not connects(one)] or own
+    walks = deed is not None and deed.skill is Skill.LOCO
+    own = [one for one in own if walks or not connects(one)] or own
     if deed is not None and not writer.reader.is_shown(read.clause, deed, own, index in writer.linked):
         return (read.text,)
     if read.beat.kind != "deed":

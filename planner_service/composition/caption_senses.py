@@ -72,20 +72,21 @@ def _table() -> SenseTable:
 
 
 @cache
-def senses(skill: Skill, caption: str) -> tuple[str, ...]:
-    """The ways to say what a caption shows."""
+def senses(skill: Skill, caption: str, own: bool = False) -> tuple[str, ...]:
+    """The ways to say what a caption shows; `own`: without those of its whole skill."""
     fitting = (
         one for one in _table().sense
-        if one.skill is skill and (not one.captions or any(part in caption.lower() for part in one.captions))
+        if one.skill is skill and (any(part in caption.lower() for part in one.captions) or not (own or one.captions))
     )  # fmt: skip
     return tuple(way for one in fitting for way in one.says)
 
 
-def shows(skill: Skill, caption: str, clause: Clause) -> bool:
-    """Whether a caption shows what a clause tells of; hands do nothing of it to people, nor to one's own body."""
+def shows(skill: Skill, caption: str, clause: Clause, own: bool = False) -> bool:
+    """Whether a caption shows what a clause tells of; hands do nothing of it to people, nor to one's own body. `own`:
+    what that caption shows, and not every one of its skill."""
     if skill is Skill.TOUCH and not _is_touched(object_of(clause)):
         return False
-    ways = senses(skill, caption)
+    ways = senses(skill, caption, own)
     return any(says(ways, lemmas) for lemmas in readings(clause))
 
 

@@ -54,6 +54,8 @@ _BROUGHT_TO: Final = re.compile(r"\b(?:to|into|onto|towards?) ((?:\w+ ?){1,4})")
 """Where a way leads: "drags the chair | to the desk"."""
 _LOW: Final = ("touch low height with the right hand", "touch low height")
 _ON_TOP: Final = re.compile(r"\bon (?:the|a|his|her|their) (?:\w+ )?(?:table|desk|counter)")
+_LIMBS: Final = frozenset(("foot", "leg", "elbow", "arm", "head"))
+"""What lies on a table of who sits beside it: "puts her feet up on the table"."""
 _UNDER: Final = re.compile(r"\b(?:under|beneath|underneath|behind|beside|next to)\b")
 _STATES: Final = frozenset(("be", "have", "become", "need", "like", "love", "hate", "know", "miss", "own", "do", "let"))
 _EXPRESSED: Final = frozenset(EXPRESSIONS)
@@ -99,13 +101,15 @@ class DeedRow:
     seated: tuple[str, ...] = ()
     rests: bool = False
     things: bool = False
+    there: bool = False
+    """Whether hands do it at its furniture and nowhere else, unless that is named."""
     mood: str = ""
     standing: bool = False
     """Whether who is on their feet already does it standing."""
     stands: bool = False
     """Whether its captions only stand for it."""
-    ends: tuple[str, ...] = ()
-    """Parts of captions in which the thing is in the hands: it ends what they do with it, "hangs up"."""
+    within: tuple[str, ...] = ()
+    """Parts of captions that are seen already: who does that does this where they are, "hangs up", "listens"."""
     why: str = ""
     """Why a body at home does not do it."""
     unless: tuple[str, ...] = ()
@@ -232,7 +236,8 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     if skill is Skill.TOUCH:
         return _touched(clause, about, found, named)
     fitting = [piece for piece in named if affords(piece, need)]
-    if skill is Skill.SITDOWN and not (found.skill is skill and _ON_TOP.search(clause.text)):
+    on_top = found.skill is skill and _ON_TOP.search(clause.text) and _LIMBS.isdisjoint(clause.lemmas)
+    if skill is Skill.SITDOWN and not on_top:
         seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
         fitting = seats or fitting
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
@@ -390,7 +395,7 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
 
 def _spelt_out(clause: Clause, about: str) -> Clause:
     """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers."""
-    meant = next((word for word in reversed(_lemmas(about)) if word in things()), "")
+    meant = next((word for word in _lemmas(about) if word in things()), "")
     if not meant or not {"it", "them"} & set(clause.lemmas[1:]):
         return clause
     known = replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))

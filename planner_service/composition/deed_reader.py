@@ -104,6 +104,8 @@ _THINGS: Final = re.compile(
 )
 """What begins so is done by a thing, or by nobody: "the latch clicks"."""
 
+_RESTING: Final = ("sit", "lie", "perch", "sink", "settle", "flop", "slump", "collapse")
+"""Verbs of which who sits or lies there is all that is told."""
 _SMILES: Final = ("smile", "grin", "beam", "smirk")
 _NOBODY: Final = frozenset(("no", "nobody", "nothing", "none", "neither", "few", "hardly"))
 """What is done by these is not done."""
@@ -178,7 +180,7 @@ class DeedReader:
         if found is not None and likely is not None and found.skill in RISINGS:
             return replace(found, skill=_rising(found, likely))
         found = _in_particular(found, likely, clause) if found is not None and likely is not None else found
-        if found is None or found.named or found.skill is not Skill.TOUCH:
+        if found is None or found.named or found.row.there or found.skill is not Skill.TOUCH:
             return found
         pieces = (*found.pieces, *(likeliest_pieces(likely) if likely is not None else ()))
         bearing = [one for one in dict.fromkeys(pieces) if not is_another(clause, one)] or list(found.pieces)
@@ -243,9 +245,11 @@ class DeedReader:
         if likely is None or not keyframes or deed.row.stands:
             return by_table
         rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
-        if by_table and rests and RESTS.match(clause.text):
+        if by_table and rests and (RESTS.match(clause.text) or (deed.named and clause.verb in _RESTING)):
             return True  # whatever hands do there
         if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
+            if deed.named:
+                return True  # "jumps out of bed"
             rises = max(share for (skill, _), share in likely.captions.items() if skill in RISINGS)
             return min(rises, likely.shown) > SURE  # from whatever: a bed or a chair
         said = any(shows(one.skill, one.caption, clause) for one in keyframes)
@@ -336,14 +340,17 @@ def _in_particular(deed: Deed, likely: Likely, clause: Clause) -> Deed:
         return deed
     most = likely.of(deed.skill, known)
     likeliest = [one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most]
-    idle = tuple(
-        one for one in likeliest if not any(part in one for part in IN_HANDS) or shows(deed.skill, one, clause)
-    )
-    some = idle or tuple(likeliest)
+    some = tuple(_idle(deed.skill, likeliest, clause))
     any_way = most < LIKELY or len(some) > ANY * len(known)
     if any_way or most - likely.of(deed.skill, shown_by(deed, Emotion.NEUTRAL)) < SURER_THAN_ANY:
         return deed
     return replace(deed, row=replace(row, captions=some))
+
+
+def _idle(skill: Skill, some: Sequence[str], clause: Clause) -> Sequence[str]:
+    """Those of some captions in which hands do nothing with a thing that is not told of; all where there are none."""
+    idle = [one for one in some if not any(part in one for part in IN_HANDS) or shows(skill, one, clause, own=True)]
+    return idle or some
 
 
 def _rising(deed: Deed, likely: Likely) -> Skill:
@@ -390,7 +397,8 @@ def learned_row(clause: Clause, likely: Likely) -> DeedRow:
     least = AS_LIKELY * likely.captions[skill, best]
 
     def of(other: Skill) -> tuple[str, ...]:
-        return tuple(one for (kind, one), share in likely.captions.items() if kind is other and share >= least)
+        found = [one for (kind, one), share in likely.captions.items() if kind is other and share >= least]
+        return tuple(_idle(other, found, clause))
 
     some = of(skill)
     everything = len(some) > ANY * len(_learned(skill))

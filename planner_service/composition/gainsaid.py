@@ -22,6 +22,10 @@ _INSIDE: Final = re.compile(rf"\b(?:into|inside|in) ({_THE}(?:\w+ ?){{1,2}})")
 _ON_IT: Final = re.compile(rf"\b(?:on|onto|on top of|upon) ({_THE}(?:\w+ ?){{1,2}})")
 
 
+_HAS_OBJECT: Final = frozenset(("it", "them", "the", "a", "an", "his", "her", "their", "my", "some", "all", "every"))
+"""Words that tell that it is a thing which gets there: "hides it in the wardrobe"."""
+
+
 def is_gainsaid(clause: Clause, keyframes: Sequence[Keyframe]) -> bool:
     """Whether none of some keyframes can be what a clause tells: by its verb, or by where the body or the hand is."""
     return all(_is_another_deed(clause, one) or _is_another_place(clause, one) for one in keyframes)
@@ -41,7 +45,8 @@ def _is_another_place(clause: Clause, keyframe: Keyframe) -> bool:
     covered = lain and any(word in things_called("bedding") for word in clause.lemmas)  # "under the bed covers"
     if any(not (seated and how == "behind" and not affords(piece, "sit")) for piece, how in hidden) and not covered:
         return True  # but one sits behind a desk
-    if clause.verb in theme_words()["entering_verbs"] and (hidden or _INSIDE.search(clause.text)):
+    enters = clause.verb in theme_words()["entering_verbs"] and _HAS_OBJECT.isdisjoint(clause.lemmas[1:2])
+    if enters and (hidden or _INSIDE.search(clause.text)):
         inside = [piece for place in _INSIDE.findall(clause.text) for piece in pieces_in(place)]
         if any(not affords(piece, "lie") and not affords(piece, "sit") for piece in inside):
             return True

@@ -79,6 +79,8 @@ _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside"
 _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
+_TO_BED: Final = re.compile(r"\bto bed\b")
+"""Who goes there, however they do, lies down."""
 _GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
 _LOW_DOWN: Final = re.compile(
     r"\b(?:under\w*|beneath|below|behind|floor\w*|ground|rug|carpet|tiles|low\w*|bottom|kne\w+|crawl\w*|crouch\w*|prone)\b"
@@ -162,7 +164,7 @@ class KeyframeWriter:
             self.why[index] = _not_acted(read)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
-        elif deed is not None and (row := self._ending(read)) is not None:
+        elif deed is not None and (row := self._within(read)) is not None:
             self.body.show(index)
             self.deeds.update({index: replace(deed, row=row)} if row.stands else {})
         elif deed is not None:
@@ -186,11 +188,11 @@ class KeyframeWriter:
             return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return self.reader.deed(clause, self._about)
 
-    def _ending(self, read: ReadBeat) -> DeedRow | None:
-        """The row of what ends what the hands are just seen doing: nobody goes anywhere to hang up, or close a book."""
+    def _within(self, read: ReadBeat) -> DeedRow | None:
+        """The row of what is part of what is seen already: nobody goes anywhere to hang up, or close a book."""
         row = row_of(read.clause, self._about)
         last = "".join(one.caption for one in self.keyframes[-1:])
-        return row if row is not None and any(part in last for part in row.ends) else None
+        return row if row is not None and any(part in last for part in row.within) else None
 
     def take(self, index: int, keyframes: Sequence[Keyframe], why: str, part: Part | None) -> None:
         """Keyframes that somebody else planned for a beat, of a short script where they are of one."""
@@ -393,6 +395,8 @@ class KeyframeWriter:
         self.body.resting = None
         if deed.named and piece != "floor":
             self.body.whereabouts.brought(read.clause, (read.room, piece))
+        if piece == "bed" and _TO_BED.search(read.text):
+            self._rest(index, read, Deed(deed.row, Skill.LIEDOWN, (piece,), True), mood, Skill.LIEDOWN, ())
 
     def _feel(self, index: int, beats: Sequence[ReadBeat]) -> None:
         """A mood alone: shown by what is done in it next, or was just done; else by a walk."""

@@ -47,7 +47,10 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
             or last.furniture != before.resting.furniture
         )
     )
-    if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, done))):
+    on_it = rises and last.skill is Skill.TOUCH and last.furniture == before.resting.furniture  # of what one sits on
+    if on_it and before.resting.skill is Skill.SITDOWN:
+        return True
+    if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
         return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False

@@ -36,6 +36,8 @@ _ROOMS: Final = {
     "dining_room": r"dining[ -]?room|kitchen",
     "study": r"study room|(?:in|into|to|from|of) (?:the|his|her|their) (?:study|library|office)|home office",
 }
+_LEFT: Final = re.compile(r"\b(?:out of|away from|leav(?:es?|ing)|left) (?:the|his|her|their|my) \w+ ?\w*", re.IGNORECASE)
+"""Rooms that somebody goes out of are not where it is done."""
 _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": ("drunk",)}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""
 _MEANWHILE: Final = frozenset(("after", "once", "when", "until", "as"))
@@ -314,6 +316,7 @@ def _is_meanwhile(one: ReadBeat) -> bool:
 
 def rooms_in(text: str) -> tuple[str, ...]:
     """Room types that the text names, in its order."""
+    text = _LEFT.sub("", text)
     found = [
         (match.start(), room) for room, words in _ROOMS.items() if (match := re.search(words, text, re.IGNORECASE))
     ]

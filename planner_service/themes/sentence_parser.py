@@ -64,6 +64,12 @@ _WHAT_IT_IS: Final = re.compile(
 """What was meant before is named: "unwraps it: a birthday cake"."""
 _SO: Final = re.compile(r"\bso (\w+)(?= (?:he|she|they|I|his|her|their|my) )")
 """What comes of how something is done: "laughs so hard | she has to sit down"."""
+_MEANWHILE: Final = re.compile(
+    r"(?<=\w)(,? (?:and|but)|,) (?:at (?:dawn|dusk|night|noon|midnight|sunrise|sunset|last)|(?:(?:in|by) the (?:end|evening|morning)"
+    r"|by (?:dawn|dusk|noon|midnight)|after a (?:while|moment|bit|minute|pause|long time)|(?:some|a long) time later"
+    r"|(?:hours|minutes|moments|an hour|a minute|a moment) later)),? (?=([a-z]+)\b)"
+)
+"""When it is, between a joint and what is done then: "drinks coffee, and | at dawn | falls asleep"."""
 _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
 
@@ -108,6 +114,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     quotes: list[str] = []
     text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
     text = _SO.sub(lambda one: f"{one[0]} that" if is_adjective(one[1].lower()) else one[0], text)
+    text = _MEANWHILE.sub(lambda one: f"{one[1]} " if verb_of(one[2]) not in ("", one[2]) else one[0], text)
     text = _TITLE.sub(r"\1", text.replace("«", "“").replace("»", "”"))  # which stand for what is said below
 
     def kept(match: re.Match[str]) -> str:
