@@ -29,9 +29,11 @@ class DeedPlaces:
         """Room and furniture where it is done: as the beat says, else as is usual, of what there will be. Who is in no
         room yet does it in the one that is spoken of next (`ahead`)."""
         need, usual = NEEDS[skill], deed_table().usual
+        seat = body.resting.furniture if body.resting is not None and skill is Skill.TOUCH else ""
         asked = dict.fromkeys((read.room, room_of(read.clause), body.room or ahead))
         rooms = [room for room in asked if room is not None and room in self._rooms]
         near = [] if deed.named else [one.furniture for one in body.near()]
+        near = [one for one in near if one != seat]  # what lies about does so elsewhere than under one
         last = [one for one in near if self.reader.may_be_at(read.clause, skill, one, one in deed.pieces)]
         last = [*last, *body.there(deed)]
         if deed.named:  # what is named and not there has a stand-in, which the story says
@@ -43,11 +45,12 @@ class DeedPlaces:
         anywhere = need == "sit" or opening_of(skill, read.text)  # no sofa in kitchens; every room has a door
         for room in rooms:
             own = [one for one in deed.pieces if anywhere and one in usual[room][need]]
-            options = [*last, *own, *deed.pieces, *usual[room][need]]
+            options = [one for one in (*last, *own, *deed.pieces, *usual[room][need]) if one != seat]
             if piece := next((one for one in options if affords(one, need) and self.has(one, room)), ""):
                 return room, piece
         general = [piece for those in usual.values() for piece in those[need]]
         options = [*last, *deed.pieces, *(() if deed.pieces else usual["living_room"][need]), *general]
+        options = [one for one in options if one != seat]
         return None, next((piece for piece in options if affords(piece, need) and self.has(piece)), "")
 
     @property

@@ -27,6 +27,8 @@ GETS_THERE: Final = re.compile(
 )
 """Words that tell of lying down, not of lying there."""
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
+_GOES: Final = ("leave", "exit", "go", "walk", "run", "rush", "hurry")
+"""Verbs of who gets up to do it."""
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
 )
@@ -57,9 +59,16 @@ def is_done_there(resting: PlannedKeyframe, deed: Deed) -> bool:
 def only_stands_for(resting: PlannedKeyframe, read: ReadBeat, deed: Deed, reader: DeedReader) -> bool:
     """Whether what would be done is hardly taken for what is told; where it is done at a certain thing, that is gone to
     all the same."""
-    known = deed.named or deed.row.rests or deed.skill in RISINGS
+    known = deed.named or deed.row.rests or deed.skill in RISINGS or is_sure(read, deed)
     least = HARDLY_HERE if is_done_there(resting, deed) else HARDLY
     return not known and reader.hardly_shows(read.clause, deed, read.beat.emotion, least)
+
+
+def is_sure(read: ReadBeat, deed: Deed) -> bool:
+    """Whether who rests gets up for it, however unlikely it looks: for a thing that is kept somewhere, in so many words,
+    or to go."""
+    fetches = deed.skill is Skill.TOUCH and deed.row.things and bool(deed.row.captions) and not deed.row.stands
+    return fetches or (deed.skill is Skill.LOCO and read.clause.verb in _GOES)
 
 
 def dozing(resting: PlannedKeyframe | None, read: ReadBeat, reader: DeedReader) -> tuple[str, ...]:

@@ -10,8 +10,11 @@ from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader
 from planner_service.composition.gainsaid import is_gainsaid
+from planner_service.composition.rest_place import is_sure
 from planner_service.scripts.acted_beats import connects
+from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
+from scene_graphs.furniture import categories_of
 
 SEATED_FOR_IT: Final = 0.7
 """Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
@@ -47,14 +50,15 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
             or last.furniture != before.resting.furniture
         )
     )
-    on_it = rises and last.skill is Skill.TOUCH and last.furniture == before.resting.furniture  # of what one sits on
-    if on_it and before.resting.skill is Skill.SITDOWN:
-        return True
+    if rises and last.skill is Skill.TOUCH and before.resting.skill is Skill.SITDOWN:
+        own = categories_of(before.resting.furniture) & categories_of(last.furniture)
+        if own and not affords(last.furniture, "lie"):
+            return True  # nobody gets up for the seat they sit on
     if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
         return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False
-    if not (seated or rises or len(new) > len(done)):
+    if is_sure(read, deed) or not (seated or rises or len(new) > len(done)):
         return False  # a hand, or steps, where one is
     least = SEATED_FOR_IT if rises or (seated and done[-1].skill is Skill.SITDOWN) else GONE_FOR_IT
     if max(reader.likelihood(read.clause, one) for one in done) < least:
