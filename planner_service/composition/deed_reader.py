@@ -335,12 +335,11 @@ def _without(deed: Deed | None, never: Sequence[str]) -> Deed | None:
 def _in_particular(deed: Deed, likely: Likely, clause: Clause) -> Deed:
     """A deed of which the table has no more than its skill, with the captions that show how it is done: "sits
     upright"; none in which hands do what is not told of."""
-    row, known = deed.row, _learned(deed.skill)
+    row, known = deed.row, _idle(deed.skill, _learned(deed.skill), clause)
     if row.captions or row.why or deed.skill is not row.skill:
         return deed
     most = likely.of(deed.skill, known)
-    likeliest = [one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most]
-    some = tuple(_idle(deed.skill, likeliest, clause))
+    some = tuple(one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most)
     any_way = most < LIKELY or len(some) > ANY * len(known)
     if any_way or most - likely.of(deed.skill, shown_by(deed, Emotion.NEUTRAL)) < SURER_THAN_ANY:
         return deed

@@ -14,7 +14,7 @@ from planner_service.composition.rest_place import is_sure
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
-from scene_graphs.furniture import categories_of
+from scene_graphs.furniture import class_of
 
 SEATED_FOR_IT: Final = 0.7
 """Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
@@ -51,9 +51,9 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
         )
     )
     if rises and last.skill is Skill.TOUCH and before.resting.skill is Skill.SITDOWN:
-        own = categories_of(before.resting.furniture) & categories_of(last.furniture)
-        if own and not affords(last.furniture, "lie"):
-            return True  # nobody gets up for the seat they sit on
+        same = last.furniture == before.resting.furniture and not affords(last.furniture, "lie")
+        if same or (not deed.named and class_of(last.furniture) == class_of(before.resting.furniture)):
+            return True  # nobody gets up for a seat
     if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
         return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
