@@ -7,9 +7,10 @@ import unicodedata
 from typing import Annotated, Final, Literal
 
 from pydantic import AliasChoices, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, field_validator
+from pydantic_core import PydanticKnownError
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import Emotion, Skill, skills_named
 
 EMOTIONS: Final[tuple[Emotion, ...]] = tuple(Emotion)
 """Neutral and the eight emotions or styles of SIMS 4.1."""
@@ -38,6 +39,18 @@ def legible(text: object) -> object:
 Line = Annotated[str, BeforeValidator(legible)]
 
 
+def _skill(said: object) -> Skill:
+    """The skill of its name or of what people call it; refused with all of them."""
+    try:
+        return Skill(said)
+    except ValueError:
+        raise PydanticKnownError("enum", {"expected": skills_named()}) from None
+
+
+SkillWord = Annotated[Skill, BeforeValidator(_skill)]
+"""A skill as somebody writes it: "sitdown", or "sit down" or "sit" as stories print it."""
+
+
 class _ScriptPart(BaseModel):
     """What scripts are made of: it never changes, and has its own fields alone."""
 
@@ -49,7 +62,7 @@ class Keyframe(_ScriptPart):
 
     model_config = ConfigDict(populate_by_name=True)
 
-    skill: Skill
+    skill: SkillWord
     emotion: Line = Field("neutral", validation_alias=AliasChoices("emotion", "emotion/style"), max_length=80)
     """In free words, as it was written: "tired, sad"."""
     caption: Line = Field(min_length=1, max_length=200)

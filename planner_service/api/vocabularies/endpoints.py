@@ -24,12 +24,12 @@ from planner_service.api.vocabularies.schemas import (
 )
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import captions
-from planner_service.scripts.script import EMOTIONS
+from planner_service.scripts.script import EMOTIONS, SkillWord
 from planner_service.scripts.script_words import NEEDS
 from scene_graphs.furniture import AFFORDANCES, affordances, catalogue, class_of, display_name, group_of
 
 vocabularies_router = APIRouter(prefix="/v1", tags=["vocabularies"])
-Skilled = Annotated[Skill | None, Query(description="Only those for this skill.")]
+Skilled = Annotated[SkillWord | None, Query(description="Only those for this skill.")]
 Affording = Annotated[Literal["sit", "lie", "touch"] | None, Query(description="Only what a body can do this with.")]
 
 
