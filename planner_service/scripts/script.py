@@ -189,6 +189,9 @@ class Beat(_ScriptPart):
     """What its words tell besides, which no keyframe shows: "for her ladyship"; all of them where something only stands
     for it: a spin for "conducts an orchestra"."""
 
+    replaced: bool = False
+    """Whether somebody put other keyframes in the place of those that were to show it: it is told what they do."""
+
     @property
     def stood_for(self) -> bool:
         """Whether its keyframes show something else in its place."""
@@ -237,9 +240,9 @@ class LongScript(_ScriptPart):
     seed: int = 0
 
     def said_of(self, keyframe: PlannedKeyframe) -> str:
-        """The theme's words of all that a keyframe shows."""
+        """The theme's words of all that a keyframe shows; not of what somebody put it in the place of."""
         shown = {keyframe.beat, *keyframe.also}  # keyframes of one's own may name beats of another story
-        return "; ".join(beat.text for number, beat in enumerate(self.beats) if number in shown)
+        return "; ".join(beat.text for number, beat in enumerate(self.beats) if number in shown and not beat.replaced)
 
     @property
     def acted(self) -> int:
