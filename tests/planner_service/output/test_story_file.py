@@ -19,6 +19,7 @@ from planner_service.library.library import Shelves
 from planner_service.output.story_export import story_to_dict
 from planner_service.output.story_file import StoryFile
 from planner_service.pipeline import Pipeline, Planned, RequestError, StoryRequest
+from scene_graphs.furniture import display_name
 
 THEME = (
     "An old man comes home, opens the window, writes a letter to his daughter at the desk, drinks a cup of tea on the "
@@ -92,11 +93,15 @@ def test_only_the_words_of_the_moment_that_was_changed_are_other_words(tmp_path:
 def test_a_touch_at_another_piece_is_told_at_that_one(tmp_path: Path) -> None:
     row = made()
     at = next(index for index, one in enumerate(row["script"]["keyframes"]) if one["skill"] == "touch")
-    _, planned = changed(tmp_path, at, furniture="sofa")
+    story, planned = changed(tmp_path, at, furniture="sofa")
     moment = next(index for index, one in enumerate(planned.script.keyframes) if one.skill == "touch")
     (words,) = words_of(planned.told.to_dict(), moment)
-    assert "window" not in words
-    assert "sofa" in words
+    assert "window" not in planned.told.text
+    object_id = planned.stage.places[moment].object_id
+    assert object_id is not None
+    assert display_name(planned.home.object(object_id).category) in words
+    actions = pipeline().act(planned.request, planned.stage, story.kept(planned))
+    assert actions[moment].object_id == object_id
 
 
 def test_a_moment_that_is_put_in_or_left_out_moves_the_words_of_no_other(tmp_path: Path) -> None:
