@@ -28,7 +28,7 @@ from planner_service.cli.console import (
 )
 from planner_service.cli.story import Extra, check_output, produce
 from planner_service.library.library import open_shelves
-from planner_service.output.story_file import StoryFile, is_story
+from planner_service.output.replayed_story import ReplayedStory, is_story
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
 from planner_service.scripts.caption_actions import look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as, usual
@@ -59,7 +59,7 @@ class Script(NamedTuple):
     keyframes: list[PlannedKeyframe]
     title: str
     """Or summary; empty: it has none."""
-    story: StoryFile | None = None
+    story: ReplayedStory | None = None
     """The story that was made of them before; None: they are just a script."""
 
 
@@ -150,7 +150,7 @@ def read_script(path: Path) -> Script:
         raise RequestError(f"{path.name}: {told}", at="script")
     read = [keyframe for keyframe in keyframes if keyframe is not None]
     with _named(path):
-        return Script(read, title, StoryFile.read(found, read) if is_story(found) else None)
+        return Script(read, title, ReplayedStory.read(found, read) if is_story(found) else None)
 
 
 def _json(path: Path) -> Any:

@@ -81,6 +81,13 @@ def senses(skill: Skill, caption: str) -> tuple[str, ...]:
     return tuple(way for one in fitting for way in one.says)
 
 
+@cache
+def own_senses(skill: Skill, caption: str) -> tuple[str, ...]:
+    """The same without what every caption of the skill shows."""
+    fitting = (one for one in _table().sense if one.skill is skill and one.captions)
+    return tuple(way for one in fitting if any(part in caption.lower() for part in one.captions) for way in one.says)
+
+
 def shows(skill: Skill, caption: str, clause: Clause) -> bool:
     """Whether a caption shows what a clause tells of; hands do nothing of it to people, nor to one's own body."""
     if skill is Skill.TOUCH and not _is_touched(object_of(clause)):

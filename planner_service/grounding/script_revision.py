@@ -192,7 +192,7 @@ class _Reader:
             nearest = f"; the nearest that is known is “{hashed_words().nearest(one.skill, one.caption)[0]}”"
         except ValueError:
             nearest = ""
-        where = f"GET /v1/captions?skill={one.skill} lists all"
+        where = f"`sims captions` or GET /v1/captions?skill={one.skill} lists all"
         self._note(number, "caption", f"the body knows no “{one.caption}” for {one.skill}{nearest}; {where}")
 
     def _object(self, number: int, one: EditedKeyframe, old: PlannedKeyframe | None) -> str | None:

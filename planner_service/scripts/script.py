@@ -39,15 +39,15 @@ def legible(text: object) -> object:
 Line = Annotated[str, BeforeValidator(legible)]
 
 
-def _skill(said: object) -> Skill:
-    """The skill of its name or of what people call it; refused with all of them."""
+def skill_of(said: object) -> Skill:
+    """The skill of its name or of what people call it. PydanticKnownError, a ValueError, names all of them."""
     try:
         return Skill(said)
     except ValueError:
         raise PydanticKnownError("enum", {"expected": skills_named()}) from None
 
 
-SkillWord = Annotated[Skill, BeforeValidator(_skill)]
+SkillWord = Annotated[Skill, BeforeValidator(skill_of)]
 """A skill as somebody writes it: "sitdown", or "sit down" or "sit" as stories print it."""
 
 

@@ -41,7 +41,7 @@ def acted_to_dict(stage: Furnished) -> Json:
 
 
 @dataclass(frozen=True)
-class StoryFile:
+class ReplayedStory:
     """A story as it was made, and its keyframes as its file has them now."""
 
     request: StoryRequest
@@ -53,7 +53,7 @@ class StoryFile:
     """As they are wanted."""
 
     @classmethod
-    def read(cls, row: Json, keyframes: Sequence[PlannedKeyframe]) -> StoryFile:
+    def read(cls, row: Json, keyframes: Sequence[PlannedKeyframe]) -> ReplayedStory:
         """Of a whole story.json, whose keyframes were read already. RequestError if it is none any more."""
         try:
             request = StoryRequest(

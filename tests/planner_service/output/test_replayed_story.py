@@ -16,8 +16,8 @@ from motion_backend.motion import RISINGS, Character
 from planner_service.cli import app
 from planner_service.cli.play import read_script
 from planner_service.library.library import Shelves
+from planner_service.output.replayed_story import ReplayedStory
 from planner_service.output.story_export import story_to_dict
-from planner_service.output.story_file import StoryFile
 from planner_service.pipeline import Pipeline, Planned, RequestError, StoryRequest
 from scene_graphs.furniture import display_name
 
@@ -40,7 +40,7 @@ def made() -> dict[str, Any]:
     return json.loads(json.dumps(story_to_dict(pipeline().make(request))))
 
 
-def read(row: object, folder: Path) -> StoryFile:
+def read(row: object, folder: Path) -> ReplayedStory:
     path = folder / "story.json"
     path.write_text(json.dumps(row), encoding="utf-8")
     story = read_script(path).story
@@ -53,7 +53,7 @@ def drinking(row: dict[str, Any]) -> int:
     return next(at for at, one in enumerate(row["script"]["keyframes"]) if one["caption"] == TEA)
 
 
-def changed(folder: Path, at: int, **fields: str) -> tuple[StoryFile, Planned]:
+def changed(folder: Path, at: int, **fields: str) -> tuple[ReplayedStory, Planned]:
     row = deepcopy(made())
     row["script"]["keyframes"][at] |= fields
     story = read(row, folder)
