@@ -53,16 +53,19 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
 
 
 def _title_of(script: LongScript, wording: Wording) -> str:
-    """A title after the mood that keyframes have most, and where what is touched or rested on most is; "" of none."""
+    """A title after where what is touched or rested on most is, and the mood that keyframes there have most; "" of
+    none."""
     if not script.keyframes:
         return ""
-    moods = [one.mood.value for one in reversed(script.keyframes)]
     used = [(at, one) for at, one in enumerate(script.keyframes) if not (connects(one) or one.on_floor)]
     pieces = [one.piece for _, one in used]
+    chosen = max(pieces, key=pieces.count) if used else None
+    there = [one for _, one in used if one.piece == chosen] or script.keyframes
+    moods = [one.mood.value for one in reversed(there)]
     plain = title_of("", max(moods, key=lambda mood: (mood != "neutral") * moods.count(mood)))
-    if not used:
+    if chosen is None:
         return plain
-    at, one = used[pieces.index(max(pieces, key=pieces.count))]
+    at, one = used[pieces.index(chosen)]
     words = wording.on(at, one) if one.skill in RESTS else f"by {wording.the(at, one)}"
     where, _, name = words.partition(" the ")
     title = f"{plain.removesuffix(' at Home')} {where} the".split()
