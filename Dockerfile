@@ -11,6 +11,7 @@ WORKDIR /app/web
 COPY web/package.json web/package-lock.json ./
 RUN --mount=type=cache,target=/root/.npm npm ci --no-audit --no-fund
 COPY web ./
+COPY scene_graphs/data/furniture_names.json ../scene_graphs/data/
 RUN npm run build
 
 FROM python:3.11-slim AS build

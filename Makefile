@@ -7,7 +7,7 @@ READY := $(VENV)/.ready
 READY_DEV := $(VENV)/.ready-dev
 # What Node is needed for: the page, its tests in a browser, the Khronos glTF validator.
 PAGE := planner_service/page/index.html
-PAGE_SOURCES = $(shell find web -type f -not -path '*/node_modules/*' -not -path 'web/test/*' -not -name '.*')
+PAGE_SOURCES = $(shell find web -type f -not -path '*/node_modules/*' -not -path 'web/test/*' -not -name '.*') scene_graphs/data/furniture_names.json
 NODE_TESTS := $(patsubst %/package-lock.json,%/node_modules/.ready,$(wildcard tests/*/package-lock.json))
 NODE_20 := node -e 'process.exit(parseInt(process.versions.node) >= 20 ? 0 : 1)' 2>/dev/null && command -v npm >/dev/null
 

@@ -32,17 +32,30 @@ class Skill(StrEnum):
     @property
     def words(self) -> str:
         """What people call it: "sit down"."""
-        return SKILL_WORDS[self]
+        return SKILL_WORDS[self][0]
+
+    @classmethod
+    def _missing_(cls, value: object) -> Skill | None:
+        """The skill that people call so."""
+        said = " ".join(value.lower().replace("_", " ").split()) if isinstance(value, str) else ""
+        return next((skill for skill, words in SKILL_WORDS.items() if said in (skill.value, *words)), None)
 
 
 SKILL_WORDS: Final = {
-    Skill.LOCO: "walk",
-    Skill.SITDOWN: "sit down",
-    Skill.STANDUP: "stand up",
-    Skill.GETUP: "get up",
-    Skill.LIEDOWN: "lie down",
-    Skill.TOUCH: "touch",
+    Skill.LOCO: ("walk",),
+    Skill.SITDOWN: ("sit down", "sit"),
+    Skill.STANDUP: ("stand up",),
+    Skill.GETUP: ("get up",),
+    Skill.LIEDOWN: ("lie down", "lie"),
+    Skill.TOUCH: ("touch",),
 }
+"""What people call each, the first as it is printed; a script may say any of them."""
+
+
+def skills_named() -> str:
+    """Every skill with its other words: "loco (or walk), sitdown (or sit down, sit)"."""
+    others = ((skill, [word for word in words if word != skill]) for skill, words in SKILL_WORDS.items())
+    return ", ".join(f"{skill} (or {', '.join(words)})" if words else skill for skill, words in others)
 
 
 def moment(keyframe: int) -> str:

@@ -135,7 +135,10 @@ def check_character(character: Character) -> None:
 
 
 def named_as(theme: str, character: Character) -> Character:
-    """A character with the name and pronouns of the member that was asked for, or of the theme's person."""
+    """A character with the name and pronouns of the member that was asked for, or of the theme's person; one of which
+    everything is given already is as it is."""
+    if all(getattr(character, name) for name in GIVEN):
+        return character
     if not character.member or (character.name, character.pronouns) != (DEFAULT.name, DEFAULT.pronouns):
         return cast_by(theme, character)
     member, read = cast().named(character.member), cast_by(theme, DEFAULT)

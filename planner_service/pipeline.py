@@ -297,10 +297,19 @@ class Pipeline:
 
     def make(self, request: StoryRequest, progress: Progress = lambda _stage, _share: None) -> Story:
         """Theme to acted story."""
-        director = Director.of(request.backend)
-        planned = self.plan(request, progress)
+        require_backend(request.backend)
+        return self.play(self.plan(request, progress), progress)
+
+    def play(
+        self,
+        planned: Planned,
+        progress: Progress = lambda _stage, _share: None,
+        kept: Sequence[Kept | None] = (),
+    ) -> Story:
+        """A planned story acted out; `kept` of its keyframes stay grounded as they were."""
+        director = Director.of(planned.request.backend)
         progress("act", 0.0)
-        actions = self.act(request, planned.stage)
+        actions = self.act(planned.request, planned.stage, kept)
         motions = move(director, planned, actions, progress)
         return judge(planned, actions, motions, progress)
 

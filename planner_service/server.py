@@ -152,7 +152,8 @@ def serve(settings: Settings) -> None:
             await super().startup(sockets)  # type: ignore[arg-type]
             if self.started:
                 port = listening.getsockname()[1]
-                print(f"sims: ready at {_address(settings.host, port)} ({settings.workers} workers)", flush=True)  # noqa: T201
+                workers = f"{settings.workers} worker{'s' * (settings.workers != 1)}"
+                print(f"sims: ready at {_address(settings.host, port)} ({workers})", flush=True)  # noqa: T201
                 threading.Thread(target=warm_up, name="warm up", daemon=True).start()
 
     listening = listen(settings)

@@ -5,8 +5,10 @@ The furniture we know: what stands in which class and group, what a body can do 
 
 from __future__ import annotations
 
+import json
 import re
 from functools import cache, cached_property, lru_cache
+from importlib import resources
 from typing import Final, Literal, NamedTuple
 
 from scene_graphs.data_tables import read_table, require_known, require_unlike, table
@@ -47,8 +49,6 @@ class Catalogue:
     """Generic words of scripts. The kinds inside one class must not share a category: the lower bound counts on it."""
     other_words: dict[str, tuple[str, ...]]
     """Other words by category or kind."""
-    display_names: dict[str, str]
-    """Categories whose slug does not read as a person would say it."""
     room_words: dict[str, str]
     """Other words for room types."""
 
@@ -67,7 +67,6 @@ class Catalogue:
         require_unlike("kinds", (member for members in self.kinds.values() for member in members))
         require_unlike("other_words", (word for words in self.other_words.values() for word in words))
         require_known("other_words", self.other_words, named)
-        require_known("display_names", self.display_names, self.categories)
         require_known("room_words", self.room_words.values(), ROOM_TYPES)
 
     @cached_property
@@ -86,6 +85,16 @@ class Catalogue:
 def catalogue() -> Catalogue:
     """The furniture we know, from data/furniture.toml."""
     known: Catalogue = read_table("scene_graphs", "furniture.toml", Catalogue)
+    return known
+
+
+@cache
+def display_names() -> dict[str, str]:
+    """Categories whose slug does not read as a person would say it: data/furniture_names.json, which the page reads
+    too."""
+    text = resources.files("scene_graphs").joinpath("data", "furniture_names.json").read_text(encoding="utf-8")
+    known: dict[str, str] = json.loads(text)
+    require_known("furniture_names", known, catalogue().categories)
     return known
 
 
@@ -177,7 +186,7 @@ def typical_size(category: str) -> Size:
 def display_name(word: str) -> str:
     """The name as a person would say it: "dining chair", "TV stand"."""
     name = canonical(word)
-    return catalogue().display_names.get(name, name.replace("_", " "))
+    return display_names().get(name, name.replace("_", " "))
 
 
 def _slug(word: str) -> str:

@@ -37,10 +37,10 @@ log = structlog.get_logger("sims.http")
 
 
 def configure_logging(level: str, stream: TextIO) -> None:
-    """Send structlog's and the standard library's lines to `stream`, one JSON object each, or in colour to a terminal.
-
-    Called once a process.
+    """Send structlog's and the standard library's lines to `stream`, one JSON object each; to a terminal as words,
+    without a server's news of itself. Called once a process.
     """
+    people = stream.isatty()
     shared: list[Any] = [
         structlog.contextvars.merge_contextvars,
         structlog.stdlib.add_log_level,
@@ -54,13 +54,14 @@ def configure_logging(level: str, stream: TextIO) -> None:
         logger_factory=structlog.stdlib.LoggerFactory(),
         cache_logger_on_first_use=False,
     )
+    as_json = structlog.processors.JSONRenderer(default=str)
     handler = logging.StreamHandler(stream)
     handler.setFormatter(
         structlog.stdlib.ProcessorFormatter(
             foreign_pre_chain=[structlog.stdlib.ExtraAdder(allow=[DBOS_STORY]), *shared],
             processors=[
                 structlog.stdlib.ProcessorFormatter.remove_processors_meta,
-                structlog.dev.ConsoleRenderer() if stream.isatty() else structlog.processors.JSONRenderer(default=str),
+                *((_in_words, structlog.dev.ConsoleRenderer(pad_event_to=0)) if people else (as_json,)),
             ],
         )
     )
@@ -72,8 +73,18 @@ def configure_logging(level: str, stream: TextIO) -> None:
         library = logging.getLogger(name)
         # Not by propagation: DBOS prints in its own way unless its logger has a handler when it starts.
         library.handlers, library.propagate = [handler], False
-        library.setLevel(max(logging.WARNING if name in QUIET else 0, root.level))
+        library.setLevel(max(logging.WARNING if people or name in QUIET else 0, root.level))
     logging.getLogger("uvicorn.access").disabled = True
+
+
+def _in_words(_logger: WrappedLogger, _method: str, line: EventDict) -> EventDict:
+    """A line for who looks on: a request in a few words, without when, by whom and under which number."""
+    for name in ("time", "caller", "request_id"):
+        line.pop(name, None)
+    if line["event"] == "request":
+        words = [str(line.pop(name, "")) for name in ("method", "path", "status")]
+        line["event"] = f"{' '.join(words)} in {line.pop('ms', 0):.0f} ms"
+    return line
 
 
 def _without_absent(_logger: WrappedLogger, _method: str, line: EventDict) -> EventDict:

@@ -25,6 +25,12 @@ LayoutOption = Annotated[
     typer.Option("--layout", help="A layout file, or the id of a built-in layout; may be given up to 4 times."),
 ]
 BackendOption = Annotated[str | None, typer.Option("--backend", help="What moves the body (SIMS_BACKEND; procedural).")]
+NameOption = Annotated[
+    str, typer.Option("--name", help="The character's name; left out: as the story or its theme calls them, else Sam.")
+]
+PronounsOption = Annotated[
+    str, typer.Option("--pronouns", help="he, she or they; left out: as in the story or its theme.")
+]
 HeightOption = Annotated[
     float, typer.Option("--height", help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
 ]

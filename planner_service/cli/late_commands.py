@@ -19,6 +19,7 @@ COMMANDS: Final = {
     "story": ("story:story", "Make a story of a theme: script, home, text, motion, film"),
     "play": ("play:play", "Act out a script of your own"),
     "cast": ("cast_command:cast_command", "List who plays in stories, and what there is to wear"),
+    "captions": ("captions_command:captions_command", "List what the body can do, in words"),
     "extract": ("extract_command:extract", "Take short scripts out of a film, subtitles or a text"),
     "record": ("record_command:record", "Record what a language model answers, to be replayed"),
     "task": ("tasks:task", "Break an instruction into steps, and act it out"),

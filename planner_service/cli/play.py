@@ -3,20 +3,32 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Any, Final
+from typing import Annotated, Any, Final, NamedTuple
 
 import typer
 from pydantic import ValidationError
 from rich.console import Console
 
 from motion_backend.motion import Character, Emotion, Skill, moment
+from planner_service.cast_choice import DEFAULT
 from planner_service.cli.cast_command import CharacterOption, character_given
-from planner_service.cli.console import BackendOption, FilmOption, HeightOption, LayoutOption, UsdOption
+from planner_service.cli.console import (
+    BackendOption,
+    FilmOption,
+    HeightOption,
+    LayoutOption,
+    NameOption,
+    PronounsOption,
+    UsdOption,
+)
 from planner_service.cli.story import Extra, check_output, produce
 from planner_service.library.library import open_shelves
+from planner_service.output.replayed_story import ReplayedStory, is_story
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
 from planner_service.scripts.caption_actions import look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as, usual
@@ -41,43 +53,91 @@ KEYS: Final = ("script", "keyframes")
 """Under which a story.json, a long or a short script has its keyframes."""
 
 
+class Script(NamedTuple):
+    """What a file has to be played."""
+
+    keyframes: list[PlannedKeyframe]
+    title: str
+    """Or summary; empty: it has none."""
+    story: ReplayedStory | None = None
+    """The story that was made of them before; None: they are just a script."""
+
+
 def play(
     script: Annotated[Path, typer.Argument(help="Keyframes as JSON: a list, a script that has some, or a story.json.")],
     out: Annotated[Path | None, typer.Option(help="Folder for the files; left out: a new one in out/.")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same motion.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="The same seed gives the same motion; left out: the story's own, else 0.")
+    ] = None,
     layout: LayoutOption = None,
     backend: BackendOption = None,
+    name: NameOption = "Sam",
+    pronouns: PronounsOption = "they",
     height: HeightOption = 1.70,
     character: CharacterOption = "",
     film: FilmOption = False,
     usd: UsdOption = False,
 ) -> None:
-    """Act out a script of your own: nothing is planned, a home is found for it unless one is given."""
+    """Act out a script of your own: nothing is planned, a home is found for it unless one is given.
+
+    The story.json of a story plays as that story did, but for the moments that were changed in it.
+    """
     from planner_service.cli.layouts import chosen_layouts
 
     settings = read_settings()
-    keyframes, title = read_script(script)
+    given = read_script(script)
     extra = Extra(film, usd)
     check_output(out, extra)
     console = Console(markup=False)
     pipeline = Pipeline(open_shelves(settings))
-    for line in unknown_captions(keyframes, pipeline.words):
-        console.print(f"{script.name}: {line}", highlight=False, soft_wrap=True)
-    request = StoryRequest(
-        theme=title,
-        keyframes=tuple(keyframes),
-        layouts=chosen_layouts(layout or [], pipeline.shelves),
-        seed=seed,
-        backend=backend or settings.backend,
-        character=character_given(character, Character(height=height)),
+    layouts = chosen_layouts(layout or [], pipeline.shelves)
+    asked = Character(name, pronouns, height)
+    if given.story is None:
+        for line in unknown_captions(given.keyframes, pipeline.words):
+            console.print(f"{script.name}: {line}", highlight=False, soft_wrap=True)
+        request = StoryRequest(
+            theme=given.title,
+            keyframes=tuple(given.keyframes),
+            layouts=layouts,
+            seed=seed or 0,
+            backend=backend or settings.backend,
+            character=character_given(character, asked),
+        )
+        produce(lambda show: pipeline.make(request, show), out, extra, console)
+        return
+    before = given.story.request
+    request = replace(
+        before,
+        seed=before.seed if seed is None else seed,
+        backend=backend or before.backend,
+        character=_who(before.character, character, asked),
     )
-    produce(pipeline, request, out, extra, console)
+    with _named(script):
+        planned = given.story.planned(pipeline, request, layouts)
+    produce(lambda show: pipeline.play(planned, show, given.story.kept(planned)), out, extra, console)  # type: ignore[union-attr]
 
 
-def read_script(path: Path) -> tuple[list[Keyframe], str]:
-    """The keyframes of a file, and its title or summary, if it has one. RequestError names the place in it, and what
-    would be right there."""
-    rows, title = _rows(path)
+@contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """What is wrong inside is said to be in that file."""
+    try:
+        yield
+    except RequestError as error:
+        raise RequestError(f"{path.name}: {error.fault}", error.remedy, at=error.at) from error
+
+
+def _who(before: Character, argument: str, asked: Character) -> Character:
+    """Who plays a story again: who did, with what is asked for; another member of the cast is another person."""
+    person = character_given(argument, DEFAULT).member
+    told = {field: value for field, value in vars(asked).items() if value != getattr(DEFAULT, field)}
+    return character_given(argument, replace(DEFAULT if person else before, **told))
+
+
+def read_script(path: Path) -> Script:
+    """The keyframes of a file, its title or summary, if it has one, and the story it is, if it is one. RequestError
+    names the place in it, and what would be right there."""
+    found = _json(path)
+    rows, title = _rows(found)
     if not isinstance(rows, list) or not rows:
         raise RequestError(f"{path.name}: holds no keyframes", "a list of them, or an object that has `keyframes`")
     if len(rows) > MAX_KEYFRAMES:
@@ -88,18 +148,24 @@ def read_script(path: Path) -> tuple[list[Keyframe], str]:
         more = [f"and {len(faults) - MAX_FAULTS} more"] if len(faults) > MAX_FAULTS else []
         told = " · ".join([*faults[:MAX_FAULTS], *more])
         raise RequestError(f"{path.name}: {told}", at="script")
-    return [keyframe for keyframe in keyframes if keyframe is not None], title
+    read = [keyframe for keyframe in keyframes if keyframe is not None]
+    with _named(path):
+        return Script(read, title, ReplayedStory.read(found, read) if is_story(found) else None)
 
 
-def _rows(path: Path) -> tuple[Any, str]:
+def _json(path: Path) -> Any:
     try:
         with path.open("rb") as file:
             data = file.read(MAX_BYTES + 1)
-        found = json.loads(data) if len(data) <= MAX_BYTES else None
+        return json.loads(data) if len(data) <= MAX_BYTES else None
     except OSError as error:
         raise RequestError(f"{path}: cannot be read: {error.strerror or error}", at="script") from error
     except (ValueError, RecursionError) as error:
         raise RequestError(f"{path.name}: is not JSON: {error}", at="script") from error
+
+
+def _rows(found: Any) -> tuple[Any, str]:
+    """What may be its keyframes, and what it calls itself."""
     title = _title_of(found)
     for key in KEYS:
         if isinstance(found, dict) and key in found:
@@ -114,7 +180,7 @@ def _title_of(found: Any) -> str:
     return next((legible(name)[:MAX_TITLE] for name in names if isinstance(name, str) and name.strip()), "")  # type: ignore[index]
 
 
-def _keyframe(row: Any, where: str, faults: list[str]) -> Keyframe | None:
+def _keyframe(row: Any, where: str, faults: list[str]) -> PlannedKeyframe | None:
     """A keyframe at known furniture; else what is wrong with it is added to the faults."""
     keyframe = None
     try:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import chain, count
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bar
 from rich.text import Text
 
 from motion_backend.backends import about
@@ -24,6 +25,8 @@ from planner_service.cli.console import (
     HeightOption,
     LayoutOption,
     ModelOption,
+    NameOption,
+    PronounsOption,
     UsdOption,
     plain_table,
 )
@@ -31,7 +34,7 @@ from planner_service.library.library import open_shelves
 from planner_service.llm.factory import load_model
 from planner_service.llm.ollama_server import ollama_models
 from planner_service.narration.told import UNSEEN, Told
-from planner_service.pipeline import STAGES, Pipeline, RequestError, Story, StoryRequest
+from planner_service.pipeline import STAGES, Pipeline, Progress, RequestError, Story, StoryRequest
 from planner_service.settings import give_backends, read_settings
 from planner_service.themes.beats import clean
 from scene_graphs.furniture import ROOM_TYPES
@@ -81,10 +84,8 @@ def story(
     clips: Annotated[
         Path | None, typer.Option(help="Collection whose walks the backend matching is made of (SIMS_CLIPS).")
     ] = None,
-    name: Annotated[
-        str, typer.Option(help="The character's name; left out: as the theme calls them, else Sam.")
-    ] = "Sam",
-    pronouns: Annotated[str, typer.Option(help="he, she or they; left out: as in the theme.")] = "they",
+    name: NameOption = "Sam",
+    pronouns: PronounsOption = "they",
     height: HeightOption = 1.70,
     character: CharacterOption = "",
     film: FilmOption = False,
@@ -110,7 +111,7 @@ def story(
     console = Console(markup=False)
     if not settings.llm_model and (line := hint(ollama_models(settings.ollama_url))):
         console.print(line, highlight=False, soft_wrap=True)
-    produce(pipeline, request, out, extra, console)
+    produce(lambda show: pipeline.make(request, show), out, extra, console)
 
 
 class Extra(NamedTuple):
@@ -133,12 +134,12 @@ def check_output(out: Path | None, extra: Extra) -> None:
     check_writable(out or OUT, [*FILES, *extra.film * (FILM,), *extra.usd * (USD,)])
 
 
-def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, extra: Extra, console: Console) -> None:
+def produce(make: Callable[[Progress], Story], out: Path | None, extra: Extra, console: Console) -> None:
     """Make a story, write its files and say how it went, with a bar while it takes."""
     from planner_service.output.story_export import write_story
 
     columns = (TextColumn("{task.description:<42}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console) as bar:
+    with Bar(*columns, console=console) as bar:
         task = bar.add_task(TOLD["plan"], total=1.0)
 
         def show(stage: str, share: float) -> None:
@@ -147,7 +148,7 @@ def produce(pipeline: Pipeline, request: StoryRequest, out: Path | None, extra: 
             before = sum(SHARES[s] for s in stages[: stages.index(stage)])
             bar.update(task, completed=part * (before + share * SHARES[stage]), description=TOLD[stage])
 
-        made = pipeline.make(request, show)
+        made = make(show)
         show("write", 0.0)
         folder = out or new_folder(OUT, made.planned.told.title)
         files = write_story(made, folder, extra.film, lambda share: show("film", share), extra.usd)

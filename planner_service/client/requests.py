@@ -292,9 +292,9 @@ def delete_short_script(script_id: str) -> Call[None]:
     return Call("DELETE", _at("short-scripts", script_id), _nothing)
 
 
-def captions(skill: str | None = None) -> Call[list[Json]]:
-    """How skills can be done: [{caption, skill}]."""
-    return Call("GET", "/v1/captions", _items, _given(skill=skill))
+def captions(skill: str | None = None, q: str = "") -> Call[list[Json]]:
+    """How skills can be done: [{caption, skill, shows, others}]; of `q`, those that have all its words or mean them."""
+    return Call("GET", "/v1/captions", _items, _given(skill=skill, q=q or None))
 
 
 def emotions() -> Call[list[Json]]:

@@ -13,10 +13,10 @@ from typing import Final
 from pydantic import Field
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import RISINGS
+from motion_backend.motion import RISINGS, Skill
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.composition.caption_senses import is_shown
-from planner_service.composition.deed_lexicon import deed_of
+from planner_service.composition.deed_lexicon import deed_of, pieces_told
 from planner_service.grounding.furnish import Furnished, furnished_again
 from planner_service.grounding.keyframes_to_actions import NEEDS
 from planner_service.scripts.acted_beats import beats_in, connects
@@ -27,6 +27,7 @@ from planner_service.scripts.script import EMOTIONS, Beat, Keyframe, LongScript,
 from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import read_beat
+from planner_service.themes.opening_words import opening_of
 from scene_graphs.errors import FieldPath, UserError
 from scene_graphs.furniture import canonical, categories_of, display_name, is_known
 from scene_graphs.graph.furniture_graph import offers
@@ -100,14 +101,26 @@ def _judged_anew(beat: Beat, index: int, before: Sequence[PlannedKeyframe], now:
     clause = read_beat(beat).clause
     deed = deed_of(clause)
     able = [one for one in new if deed is not None and (deed.row.captions or one.skill is deed.skill)]
-    shown = deed is not None and bool(able) and is_shown(clause, deed, able)
+    elsewhere = opening_of(Skill.TOUCH, beat.text) is not None and _pieces(old) != _pieces(new)
+    away = elsewhere or (_is_at(beat.text, old) and not _is_at(beat.text, new))
+    shown = deed is not None and bool(able) and is_shown(clause, deed, able) and not away
     besides = tuple(text for text in beat.unshown if text != beat.text)
-    return beat.model_copy(update={"unshown": besides if shown else (beat.text, *besides)})
+    return beat.model_copy(update={"unshown": besides if shown else (beat.text, *besides), "replaced": not shown})
 
 
 def _doing(index: int, keyframes: Sequence[PlannedKeyframe]) -> list[PlannedKeyframe]:
     """The keyframes that show a beat, without those that only lead to others."""
     return [one for one in keyframes if index in beats_in(one.beat, one.also) and not connects(one)]
+
+
+def _pieces(keyframes: Sequence[PlannedKeyframe]) -> list[str]:
+    return [one.furniture for one in keyframes]
+
+
+def _is_at(text: str, keyframes: Sequence[PlannedKeyframe]) -> bool:
+    """Whether one of some keyframes is at a piece of furniture that a text names."""
+    named = {category for _, piece in pieces_told(text) for category in categories_of(piece)}
+    return any(named & categories_of(one.piece[0]) for one in keyframes)
 
 
 def _what(keyframe: PlannedKeyframe) -> tuple[str, str, str]:
@@ -179,7 +192,7 @@ class _Reader:
             nearest = f"; the nearest that is known is “{hashed_words().nearest(one.skill, one.caption)[0]}”"
         except ValueError:
             nearest = ""
-        where = f"GET /v1/captions?skill={one.skill} lists all"
+        where = f"`sims captions` or GET /v1/captions?skill={one.skill} lists all"
         self._note(number, "caption", f"the body knows no “{one.caption}” for {one.skill}{nearest}; {where}")
 
     def _object(self, number: int, one: EditedKeyframe, old: PlannedKeyframe | None) -> str | None:

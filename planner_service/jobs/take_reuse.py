@@ -21,8 +21,8 @@ from planner_service.store.story_store import Made, StoryGone
 from scene_graphs.json_fields import Json
 
 
-class Grounded(Protocol):
-    """A story as far as it is made; StoryGone where it is not that far."""
+class Staged(Protocol):
+    """A story that was asked for, in its home; StoryGone where it is not that far."""
 
     @property
     def request(self) -> StoryRequest:
@@ -34,17 +34,25 @@ class Grounded(Protocol):
         """The script in its home."""
         ...
 
+
+class Grounded(Staged, Protocol):
+    """One whose actions are known."""
+
     @property
     def actions(self) -> Sequence[Action]:
         """One a keyframe."""
         ...
+
+
+class Moved(Grounded, Protocol):
+    """One whose motion is being made."""
 
     def segments(self, count: int) -> list[Made]:
         """The first so many segments of its motion, as far as they are there."""
         ...
 
 
-def kept_actions(take: Grounded, origin: Grounded | None) -> list[Kept | None]:
+def kept_actions(take: Staged, origin: Grounded | None) -> list[Kept | None]:
     """For each keyframe of a take what it was grounded as before; empty where nothing of that still holds."""
     try:
         if origin is None or _setting(origin) != _setting(take):
@@ -63,7 +71,7 @@ def kept_actions(take: Grounded, origin: Grounded | None) -> list[Kept | None]:
     return [None if one and _depends(index, one, found, skills) else one for index, one in enumerate(found)]
 
 
-def _setting(story: Grounded) -> tuple[object, ...]:
+def _setting(story: Staged) -> tuple[object, ...]:
     """What grounding goes by besides the keyframes."""
     return story.request.seed, actor(story.request, story.stage.script).height, story.stage.home
 
@@ -86,7 +94,7 @@ def _depends(index: int, one: Kept, found: Sequence[Kept | None], skills: Sequen
     return one.action.skill in (*RISINGS, Skill.TOUCH) or skills[index - 1] is not Skill.LOCO
 
 
-def reused_segments(take: Grounded, origin: Grounded | None, rows: Sequence[Json], director: Director) -> list[Made]:
+def reused_segments(take: Staged, origin: Moved | None, rows: Sequence[Json], director: Director) -> list[Made]:
     """The segments that a take has in common with the story it derives from, first to last, as they were made there.
 
     `rows` are the take's actions. All before the first action that differs, but the last of them: its ending looked
@@ -102,14 +110,14 @@ def reused_segments(take: Grounded, origin: Grounded | None, rows: Sequence[Json
         return []
 
 
-def _begins_alike(take: Grounded, origin: Grounded, director: Director) -> bool:
+def _begins_alike(take: Staged, origin: Staged, director: Director) -> bool:
     """Whether the same backend moves a body that stands in the same home as the other one did."""
     if take.request.backend != origin.request.backend or take.stage.home != origin.stage.home:
         return False
     return _beginning(take, director).to_dict() == _beginning(origin, director).to_dict()
 
 
-def _beginning(story: Grounded, director: Director) -> BodyState:
+def _beginning(story: Staged, director: Director) -> BodyState:
     return director.begin(story.stage.home, actor(story.request, story.stage.script), story.request.seed)
 
 

@@ -139,8 +139,9 @@ class Wording:
         self._room = ""  # where a walk had no goal last
         self._rests: PlannedKeyframe | None = None  # as what the body sits or lies
 
-    def phrases(self, rows: Sequence[tuple[int, PlannedKeyframe]]) -> list[Phrase]:
-        """Keyframes in order as phrases; every index is in exactly one of them."""
+    def phrases(self, rows: Sequence[tuple[int, PlannedKeyframe]], in_full: bool = False) -> list[Phrase]:
+        """Keyframes in order as phrases; every index is in exactly one of them. `in_full`: how the body rests is told
+        wherever it can be."""
         told: list[Phrase] = []
         untold: tuple[int, ...] = ()
         self._named, stays = "", False
@@ -153,7 +154,7 @@ class Wording:
             if (rests and stays) or (plain and self.variety.chance(0.5)):  # chance is asked last
                 untold = (*untold, index)
                 continue
-            told.append(self._phrase((*untold, index), keyframe, leads, stays))
+            told.append(self._phrase((*untold, index), keyframe, leads, stays, in_full))
             untold, stays = (), False
         return told
 
@@ -162,7 +163,9 @@ class Wording:
         before = self._rests
         return before is not None and (before.skill, before.piece) == (keyframe.skill, keyframe.piece)
 
-    def _phrase(self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool) -> Phrase:
+    def _phrase(
+        self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool, in_full: bool
+    ) -> Phrase:
         index, mood, known = indices[-1], keyframe.mood, templates()
         manners: tuple[str, ...] = ()
         walks, sits = keyframe.skill == Skill.LOCO, keyframe.skill == Skill.SITDOWN
@@ -184,7 +187,7 @@ class Wording:
         the = self.the(index, keyframe)
         base = " ".join(self._fill(self.variety.pick(ways), the, self.room(index, keyframe)).split())
         self._named = the if leads else ""
-        manner = _VERB.sub(lambda verb: past(verb[1]), self._manner(manners))
+        manner = _VERB.sub(lambda verb: past(verb[1]), self._manner(manners, in_full))
         return Phrase(
             text=_VERB.sub(lambda verb: past(verb[1]), base),
             keyframes=indices,
@@ -196,10 +199,10 @@ class Wording:
             begins=keyframe.skill in RISINGS,
         )
 
-    def _manner(self, ways: Sequence[str]) -> str:
+    def _manner(self, ways: Sequence[str], always: bool = False) -> str:
         """How the body rests, unless the story has told of that already."""
-        fresh = [way for way in ways if not self.variety.used[way]]
-        if not fresh or not self.variety.chance(0.7):
+        fresh = [way for way in ways if always or not self.variety.used[way]]
+        if not fresh or not (always or self.variety.chance(0.7)):
             return ""
         way = self.variety.pick(fresh)
         joint = "" if way.startswith(",") else " " if way.startswith(("with ", "on ", "flat ")) else ", "

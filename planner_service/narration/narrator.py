@@ -16,7 +16,7 @@ from itertools import groupby, pairwise
 from typing import Final
 
 from motion_backend.motion import RISINGS, Character, Skill
-from planner_service.narration.beat_stretches import Retelling, Stretch
+from planner_service.narration.beat_stretches import SUBJECTS, Retelling, Stretch
 from planner_service.narration.keyframe_phrases import RESTS, Places, Variety, Wording
 from planner_service.narration.keyframe_sentences import sentences
 from planner_service.narration.narrative_voice import Voice
@@ -53,16 +53,19 @@ def narrate(script: LongScript, character: Character, seed: int = 0, places: Pla
 
 
 def _title_of(script: LongScript, wording: Wording) -> str:
-    """A title after the mood that keyframes have most, and where what is touched or rested on most is; "" of none."""
+    """A title after where what is touched or rested on most is, and the mood that keyframes there have most; "" of
+    none."""
     if not script.keyframes:
         return ""
-    moods = [one.mood.value for one in reversed(script.keyframes)]
     used = [(at, one) for at, one in enumerate(script.keyframes) if not (connects(one) or one.on_floor)]
     pieces = [one.piece for _, one in used]
+    chosen = max(pieces, key=pieces.count) if used else None
+    there = [one for _, one in used if one.piece == chosen] or script.keyframes
+    moods = [one.mood.value for one in reversed(there)]
     plain = title_of("", max(moods, key=lambda mood: (mood != "neutral") * moods.count(mood)))
-    if not used:
+    if chosen is None:
         return plain
-    at, one = used[pieces.index(max(pieces, key=pieces.count))]
+    at, one = used[pieces.index(chosen)]
     words = wording.on(at, one) if one.skill in RESTS else f"by {wording.the(at, one)}"
     where, _, name = words.partition(" the ")
     title = f"{plain.removesuffix(' at Home')} {where} the".split()
@@ -94,18 +97,43 @@ class _Teller:
         self.of: dict[int, Stretch] = {  # that with the verb, of those of one beat
             one.beat: one for one in sorted(self.told.stretches, key=lambda one: one.verb is not None)
         }
+        self.anew = self._anew()
+
+    def _anew(self) -> dict[int, tuple[Stretch, str]]:
+        """By beat what its keyframes do, where they were put in place of others: told in place of a verb in the past
+        and what goes with it."""
+        found: dict[int, tuple[Stretch, str]] = {}
+        for beat, rows in self.runs:
+            stretch = self.of.get(beat) if beat is not None else None
+            if stretch is None or stretch.verb is None or not self.script.beats[stretch.beat].replaced:
+                continue
+            tokens = self.told.tokens
+            if form_of(tokens[stretch.verb].told.lower()) != "past":
+                continue
+            who = [at for at in range(stretch.start, stretch.verb) if tokens[at].is_name or tokens[at].low in SUBJECTS]
+            start = next(at for at in range(who[-1] + 1 if who else stretch.start, stretch.end) if tokens[at].is_word)
+            phrases = [phrase.whole for phrase in self.wording.phrases(rows, in_full=True)]
+            before = found.get(stretch.beat)
+            told = _listed([*([before[1].rstrip(",")] if before else ()), *phrases])
+            joint = "".join(token.text for token in tokens[stretch.end : stretch.end + 2])
+            comma = "," * ("," in told and joint.strip() in ("and", "then"))  # "a hand at his chin, and fell asleep"
+            found[stretch.beat] = replace(stretch, start=start), told + comma
+        return found
 
     def sentences(self) -> list[list[Words]]:
         """All sentences, each with what its beats' keyframes do besides."""
         shown, besides = self._owners()
         keyframes, thoughts = self._keyframes(shown), self._thoughts()
         told, words = list[list[Words]](), list[Words]()
+        instead = {at: "" for stretch, _ in self.anew.values() for at in range(stretch.start, stretch.end)}
+        instead |= {stretch.start: phrase for stretch, phrase in self.anew.values()}
         for at, token in enumerate(self.told.tokens):
-            text = " " if token.text.isspace() else token.told
+            text = instead.get(at, " " if token.text.isspace() else token.told)
             before = words[-1].text[-1:] if words else " "
             if text == " " and (before.isspace() or not before):
                 continue
-            words += [Words(token.before, keyframes.get(at, ())), Words(text, keyframes.get(at, ()), at in thoughts)]
+            lead = "" if at in instead else token.before
+            words += [Words(lead, keyframes.get(at, ())), Words(text, keyframes.get(at, ()), at in thoughts)]
             words = [one for one in words if one.text]
             if at in self.told.ends:
                 told.append(_ended(words))
@@ -124,7 +152,8 @@ class _Teller:
         for beat, rows in self.runs:
             own = [*waiting, *(index for index, _ in rows)]
             stretch = self.of.get(beat) if beat is not None else None
-            if stretch is not None and self._has_more(stretch, rows):
+            replaced = stretch is not None and self.script.beats[stretch.beat].replaced
+            if stretch is not None and (self._has_more(stretch, rows) or replaced) and beat not in self.anew:
                 end = self.told.end_of(stretch)
                 besides.setdefault(end, []).append([(index, self.script.keyframes[index]) for index in own])
                 waiting = []
@@ -138,7 +167,7 @@ class _Teller:
                 last = last if stretch is None else beat
                 shown.setdefault(last, []).extend(own)  # type: ignore[arg-type]
                 waiting = []
-                if stretch is not None:
+                if stretch is not None and not replaced:
                     self._rests(stretch, rows, resting)
             resting = rows[-1][1] if rows[-1][1].skill in RESTS else None
         if waiting:
@@ -200,6 +229,8 @@ class _Teller:
         found = {at for run in self.told.asides() for at in run}
         for stretch in self.told.stretches:
             beat = self.script.beats[stretch.beat]
+            if stretch.beat in self.anew:
+                continue
             if not (beat.seen and outcomes[stretch.beat].acted):
                 found |= {*range(stretch.start, stretch.end)}
                 continue
@@ -229,6 +260,11 @@ def _furniture_in(text: str, word: str) -> bool:
     names = (word.lower(), display_name(word).lower())
     two = map(" ".join, pairwise(words))
     return any(one in names or (is_known(one) and class_of(one) == class_of(word)) for one in (*two, *words))
+
+
+def _listed(phrases: Sequence[str]) -> str:
+    """Phrases as one: "rose, crossed to the desk and sat down"."""
+    return " and ".join(filter(None, [", ".join(phrases[:-1]), *phrases[-1:]]))
 
 
 def _between(groups: Sequence[tuple[int, int, tuple[int, ...]]]) -> list[tuple[int, int]]:

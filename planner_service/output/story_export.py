@@ -20,6 +20,7 @@ from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.narration.told import UNSEEN
 from planner_service.output.film import Filmed, write_film
+from planner_service.output.replayed_story import ACTED, acted_to_dict
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
 from planner_service.scripts.caption_actions import look_of
@@ -216,6 +217,7 @@ def story_to_dict(story: Story) -> dict[str, Any]:
         "backend": planned.request.backend,
         "character": vars(planned.character),
         "script": planned.script.model_dump(mode="json"),
+        ACTED: acted_to_dict(planned.stage),
         "rooms": planned.stage.rooms_to_dicts(),
         "home": home_to_dict(planned.home),
         "actions": [

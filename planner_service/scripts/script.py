@@ -7,9 +7,10 @@ import unicodedata
 from typing import Annotated, Final, Literal
 
 from pydantic import AliasChoices, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, field_validator
+from pydantic_core import PydanticKnownError
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import Emotion, Skill, skills_named
 
 EMOTIONS: Final[tuple[Emotion, ...]] = tuple(Emotion)
 """Neutral and the eight emotions or styles of SIMS 4.1."""
@@ -38,6 +39,18 @@ def legible(text: object) -> object:
 Line = Annotated[str, BeforeValidator(legible)]
 
 
+def skill_of(said: object) -> Skill:
+    """The skill of its name or of what people call it. PydanticKnownError, a ValueError, names all of them."""
+    try:
+        return Skill(said)
+    except ValueError:
+        raise PydanticKnownError("enum", {"expected": skills_named()}) from None
+
+
+SkillWord = Annotated[Skill, BeforeValidator(skill_of)]
+"""A skill as somebody writes it: "sitdown", or "sit down" or "sit" as stories print it."""
+
+
 class _ScriptPart(BaseModel):
     """What scripts are made of: it never changes, and has its own fields alone."""
 
@@ -49,7 +62,7 @@ class Keyframe(_ScriptPart):
 
     model_config = ConfigDict(populate_by_name=True)
 
-    skill: Skill
+    skill: SkillWord
     emotion: Line = Field("neutral", validation_alias=AliasChoices("emotion", "emotion/style"), max_length=80)
     """In free words, as it was written: "tired, sad"."""
     caption: Line = Field(min_length=1, max_length=200)
@@ -176,6 +189,9 @@ class Beat(_ScriptPart):
     """What its words tell besides, which no keyframe shows: "for her ladyship"; all of them where something only stands
     for it: a spin for "conducts an orchestra"."""
 
+    replaced: bool = False
+    """Whether somebody put other keyframes in the place of those that were to show it: it is told what they do."""
+
     @property
     def stood_for(self) -> bool:
         """Whether its keyframes show something else in its place."""
@@ -224,9 +240,9 @@ class LongScript(_ScriptPart):
     seed: int = 0
 
     def said_of(self, keyframe: PlannedKeyframe) -> str:
-        """The theme's words of all that a keyframe shows."""
+        """The theme's words of all that a keyframe shows; not of what somebody put it in the place of."""
         shown = {keyframe.beat, *keyframe.also}  # keyframes of one's own may name beats of another story
-        return "; ".join(beat.text for number, beat in enumerate(self.beats) if number in shown)
+        return "; ".join(beat.text for number, beat in enumerate(self.beats) if number in shown and not beat.replaced)
 
     @property
     def acted(self) -> int:

@@ -21,7 +21,13 @@ SEAT_END = 0.2
 """Least distance of the one who sits there to the end of the bed."""
 SIT_HEIGHTS = (0.28, 0.68)
 LIE_HEIGHTS = (0.18, 0.80)
-TO_HEAD, TO_FOOT, MIN_BED_LENGTH = 0.85, 0.95, 1.55
+TO_HEAD, TO_FOOT, MIN_SOFA_LENGTH = 0.85, 0.95, 1.55
+MIN_MATTRESS_LENGTH = 1.2
+"""Of one that somebody lies on with the legs drawn up, or the feet beyond its end."""
+ABREAST = 0.8
+"""Length of a mattress against its width from which on its head is where its pillows are: short beds may be wider."""
+ASIDE = 0.55
+"""Distance of who lies to the edge of the bed, width permitting: curled up, the head is a quarter of a metre nearer."""
 _LOW_TABLES = frozenset({"coffee_table", "pedestal_table", "table"})
 _UP = (0.0, 1.0, 0.0)
 _AROUND = [FORWARD, (1.0, 0.0), (-1.0, 0.0), (0.0, -1.0)]
@@ -62,15 +68,23 @@ def lying(placed: Placed, solid: list[Part]) -> Iterator[Spot]:
     for bed in (part for part in solid if part.role in ("mattress", "seat")):
         if not LIE_HEIGHTS[0] <= placed.position[1] + bed.top <= LIE_HEIGHTS[1]:
             continue
-        if bed.size[2] >= MIN_BED_LENGTH and bed.size[0] >= 0.5:
+        if _is_long(bed):
             ways = [(u, (0.0, -1.0)) for u in ((1.0, 0.0), (-1.0, 0.0))]
-        elif bed.size[0] >= MIN_BED_LENGTH and bed.size[2] >= 0.5:
+        elif bed.size[0] >= MIN_SOFA_LENGTH and bed.size[2] >= 0.5:
             ways = [(FORWARD, head) for head in ((-1.0, 0.0), (1.0, 0.0))]
         else:
             continue
         for shift in ALONG_BED:
             for u, head in ways:
                 yield from _lying_along(placed, solid, bed, (u, head), shift)
+
+
+def _is_long(bed: Part) -> bool:
+    """Whether one lies on it with the head at its back, not at one of its arms."""
+    width, length = bed.size[0], bed.size[2]
+    if bed.role == "mattress" and length >= max(MIN_MATTRESS_LENGTH, ABREAST * width):
+        return width >= 0.5
+    return length >= MIN_SOFA_LENGTH and width >= 0.5
 
 
 def _lying_along(
@@ -81,8 +95,8 @@ def _lying_along(
     u, head = way
     length, width = extent(bed, head), extent(bed, u)
     spare = length - TO_HEAD - TO_FOOT
-    back = TO_HEAD + min(0.25 * spare, 0.1) if spare >= 0 else TO_HEAD * length / (TO_HEAD + TO_FOOT)
-    edge = width / 4 if width >= 1.3 else width / 2
+    back = TO_HEAD + min(0.25 * max(spare, 0.0), 0.1)  # on a short one the feet have less room, not the head
+    edge = min(max(width / 4, ASIDE), width / 2)
     along, sideways = length / 2 - back, width / 2 - edge
     x, z = (bed.center[axis] + head[axis // 2] * along + u[axis // 2] * sideways for axis in (0, 2))
     local = (x, bed.top, z)

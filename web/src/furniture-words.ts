@@ -1,23 +1,22 @@
 /** Furniture in the words that people use. */
 
+import names from "../../scene_graphs/data/furniture_names.json";
+import type { Keyframe } from "./api";
 import { plain } from "./words";
 
-const NAMES: Readonly<Record<string, string>> = {
-  multi_seat_sofa: "sofa",
-  loveseat_sofa: "loveseat",
-  l_shaped_sofa: "corner sofa",
-  chaise_longue_sofa: "chaise longue",
-  lazy_sofa: "bean bag",
-  kids_bed: "children’s bed",
-  children_cabinet: "children’s cabinet",
-  tv_stand: "TV stand",
-  tv: "TV",
-  corner_side_table: "side table",
-  round_end_table: "end table",
-};
+const NAMES: Readonly<Record<string, string>> = names;
 
 /** "loveseat_sofa" as "loveseat". */
 export const nameOf = (category: string): string => NAMES[category] ?? plain(category);
+
+/** "0/l_shaped_sofa_1" as "corner sofa": the piece of that id. */
+export const pieceName = (id: string): string => nameOf(id.replace(/^\d+\//, "").replace(/_\d+$/, ""));
+
+/** Where a keyframe plays: "at the cabinet, living room". */
+export function placeWords({ object_id, furniture, room }: Pick<Keyframe, "object_id" | "furniture" | "room">): string {
+  const piece = object_id ? pieceName(object_id) : plain(furniture);
+  return room ? `${piece}, ${plain(room)}` : piece;
+}
 
 /** "2 bookshelves", "a desk" as "desk". */
 export function several(count: number, name: string): string {

@@ -2,6 +2,7 @@
 
 import type { FurnitureGraph } from "./api";
 import { s } from "./dom";
+import { nameOf } from "./furniture-words";
 import { plain } from "./words";
 
 const RADIUS = 62;
@@ -37,7 +38,7 @@ export function drawGraph(graph: FurnitureGraph): SVGSVGElement {
     return s("line", { x1, y1, x2, y2 });
   });
   const dots = places.map(([cx, cy]) => s("circle", { cx, cy, r: 5 }));
-  const words = graph.nodes.map((node) => plain(node.category)).join(", ");
+  const words = graph.nodes.map((node) => nameOf(node.category)).join(", ");
   return s("svg", { viewBox: `0 0 ${WIDTH} ${top}`, role: "img", "aria-label": `Furniture: ${words}`, style: `max-width: ${WIDTH}px` }, ...lines, ...dots, ...names);
 }
 
@@ -45,5 +46,5 @@ function label(node: FurnitureGraph["nodes"][number], [x, y]: [number, number], 
   const side = Math.cos(angle) * reach;
   const anchor = side > 0.2 ? "start" : side < -0.2 ? "end" : "middle";
   const shift: [number, number] = anchor === "middle" ? [0, Math.sin(angle) > 0 ? 18 : -11] : [Math.sign(side) * 9, 4];
-  return s("text", { x: x + shift[0], y: y + shift[1], "text-anchor": anchor }, `${plain(node.category)}${node.instance > 1 ? ` ${node.instance}` : ""}`);
+  return s("text", { x: x + shift[0], y: y + shift[1], "text-anchor": anchor }, `${nameOf(node.category)}${node.instance > 1 ? ` ${node.instance}` : ""}`);
 }

@@ -25,7 +25,9 @@ function route(): void {
   const before = id && !beside && view?.handsOver(id) ? view : null;
   clear();
   const room = /^#\/rooms(?:\/(.*))?$/.exec(path);
+  const captions = path === "#/captions";
   roomsLink.ariaCurrent = room ? "page" : null;
+  captionsLink.ariaCurrent = captions ? "page" : null;
   if (id) {
     const number = /^\d+$/.exec(asked.get("from") ?? "")?.[0];
     const from = number === undefined ? null : Number(number);
@@ -36,6 +38,8 @@ function route(): void {
     }
   } else if (room) {
     void showRooms(room[1] ?? "", query);
+  } else if (captions) {
+    void showCaptions(asked.get("with") ?? "");
   } else {
     showHome(asked.getAll("in"));
   }
@@ -56,6 +60,14 @@ async function showRooms(id: string, query: string): Promise<void> {
   fill(main);
   const { rooms } = await import("./rooms");
   if (mine === turn) leave = rooms.show(main, decode(id), query);
+}
+
+/** What the body can do, in words. */
+async function showCaptions(asked: string): Promise<void> {
+  const mine = turn;
+  fill(main);
+  const { captions } = await import("./captions");
+  if (mine === turn) captions.show(main, asked);
 }
 
 /** Two stories beside each other; their code is fetched when they are first asked for. */
@@ -102,7 +114,7 @@ function askForKey(): void {
 async function start(): Promise<void> {
   const session = await getSession().catch(() => ({ required: false, authenticated: false }));
   const out = h("button", { type: "button", class: "plain small", onclick: () => void logOut().then(askForKey) }, "Leave");
-  fill(framed("tools"), roomsLink, session.authenticated && session.required ? out : null, appearance);
+  fill(framed("tools"), roomsLink, captionsLink, session.authenticated && session.required ? out : null, appearance);
   if (session.required && !session.authenticated) askForKey();
   else route();
 }
@@ -144,6 +156,7 @@ function seen(): Seen {
 
 const appearance = appearanceButton();
 const roomsLink = h("a", { href: "#/rooms", class: "button quiet small" }, "Rooms");
+const captionsLink = h("a", { href: "#/captions", class: "button quiet small" }, "Captions");
 Object.defineProperty(window, "sims", { value: Object.freeze({ state: seen }) });
 // The address behind # names a story, so this link must not go there.
 document.querySelector(".skip")?.addEventListener("click", (event) => {

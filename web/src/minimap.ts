@@ -3,6 +3,7 @@
 import type { Home, Point2 } from "./api";
 import { color, onAppearance } from "./appearance";
 import { h } from "./dom";
+import { nameOf, pieceName } from "./furniture-words";
 import type { Track } from "./motion";
 import { heading, type Pose } from "./pose";
 import { contains, outlines, toHome } from "./walls";
@@ -68,7 +69,7 @@ export class MiniMap {
           return toHome([dx + object.position[0], dz + object.position[2]], room);
         };
         const corners = [at(-w / 2, -d / 2), at(w / 2, -d / 2), at(w / 2, d / 2), at(-w / 2, d / 2)];
-        return { id: `${index}/${object.id}`, name: plain(object.category), corners, top: object.position[1] + object.size[1] };
+        return { id: `${index}/${object.id}`, name: nameOf(object.category), corners, top: object.position[1] + object.size[1] };
       }),
     );
     this.#pieces.sort((a, b) => a.top - b.top);
@@ -82,7 +83,7 @@ export class MiniMap {
     const place: Point2 | null = pose ? [pose.root[0]!, pose.root[2]!] : null;
     const room = place === null ? -1 : this.#rooms.findIndex((outline) => contains(outline, place));
     const rooms = this.#home?.rooms.map((r) => plain(r.layout.room_type)) ?? [];
-    const where = room >= 0 ? ` The body is in the ${rooms[room]}${objectId ? `, on its way to or at the ${plain(objectId)}` : ""}.` : "";
+    const where = room >= 0 ? ` The body is in the ${rooms[room]}${objectId ? `, on its way to or at the ${pieceName(objectId)}` : ""}.` : "";
     this.element.setAttribute("aria-label", `Plan of the home: ${rooms.join(", ")}.${where}`);
     this.#redraw();
   }

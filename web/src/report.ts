@@ -2,9 +2,10 @@
 
 import type { Beat, Keyframe, KeyframeFigures, Report, Story } from "./api";
 import { fill, h } from "./dom";
+import { placeWords } from "./furniture-words";
 import { moverList, type Phase } from "./movers";
 import { badge, isOtherwise, lacking, legend, outcomeOf } from "./outcomes";
-import { beatsWords, capital, centimetres, percent, placeWords, SKILL_WORDS } from "./words";
+import { beatsWords, capital, centimetres, percent, SKILL_WORDS } from "./words";
 
 /** From these on a moment is worth a remark, metres. */
 const WIDE_CONTACT = 0.03;

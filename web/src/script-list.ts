@@ -2,9 +2,10 @@
 
 import type { Keyframe } from "./api";
 import { h } from "./dom";
+import { placeWords } from "./furniture-words";
 import { badge, type Outcome } from "./outcomes";
 import { clock } from "./timing";
-import { placeWords, SKILL_WORDS } from "./words";
+import { SKILL_WORDS } from "./words";
 
 export class ScriptList {
   readonly element = h("ol", { class: "cues" });

@@ -4,9 +4,10 @@ import { ApiError, getStory, type Keyframe, type Story } from "./api";
 import { fill, h } from "./dom";
 import { follow } from "./events";
 import { Film } from "./film";
+import { placeWords } from "./furniture-words";
 import { moverList } from "./movers";
 import { figureList, phasesOf } from "./report";
-import { beatsWords, placeWords, SKILL_WORDS, takeWords } from "./words";
+import { beatsWords, SKILL_WORDS, takeWords } from "./words";
 
 const LOOK_MS = 100;
 

@@ -3,8 +3,9 @@
 import type { Keyframe } from "./api";
 import { fill, h } from "./dom";
 import { EMOTIONS } from "./emotions";
+import { placeWords } from "./furniture-words";
 import { blocks, clock, placeOf, type Block } from "./timing";
-import { placeWords, SKILL_WORDS } from "./words";
+import { SKILL_WORDS } from "./words";
 
 /** Steps of the slider along the whole line. */
 const STEPS = 2000;

@@ -1,7 +1,7 @@
 /** What the fields of a keyframe may be, as the service lists them; asked for once. */
 
 import { json, type Home, type Skill } from "./api";
-import { namesIn } from "./furniture-words";
+import { nameOf, namesIn } from "./furniture-words";
 import { plain } from "./words";
 
 export interface Backend {
@@ -79,7 +79,7 @@ export class Vocabulary {
   things(home: Home): Thing[] {
     const all = home.rooms.flatMap(({ layout }, place) => layout.objects.map(({ id, category, position }) => ({ id: `${place}/${id}`, category, room: plain(layout.room_type), near: position[1] < REACH })));
     const names = namesIn(all);
-    return all.map(({ id, category, room, near }) => ({ id, name: names.get(id) ?? plain(category), room, near, affords: this.#affords.get(category) ?? [] }));
+    return all.map(({ id, category, room, near }) => ({ id, name: names.get(id) ?? nameOf(category), room, near, affords: this.#affords.get(category) ?? [] }));
   }
 }
 

@@ -1,6 +1,6 @@
 /** Words that a person understands for what the service names in short. */
 
-import type { Beat, Keyframe, Skill, Stage, Story } from "./api";
+import type { Beat, Skill, Stage, Story } from "./api";
 
 export const STAGES: readonly Stage[] = ["plan", "furnish", "narrate", "act", "move", "judge", "film"];
 
@@ -46,12 +46,6 @@ export const BEGUN_WORDS: Readonly<Record<Skill, string>> = {
 /** "multi_seat_sofa_1" as "multi seat sofa". */
 export function plain(name: string): string {
   return name.replace(/^\d+\//, "").replace(/_\d+$/, "").replaceAll("_", " ");
-}
-
-/** Where a keyframe plays: "at the cabinet, living room". */
-export function placeWords(keyframe: Keyframe): string {
-  const piece = keyframe.object_id ? plain(keyframe.object_id) : plain(keyframe.furniture);
-  return keyframe.room ? `${piece}, ${plain(keyframe.room)}` : piece;
 }
 
 /** A length in centimetres, from metres. */

@@ -1,5 +1,5 @@
 import { describe, expect, test } from "vitest";
-import { listing, namesIn, several } from "../src/furniture-words";
+import { listing, namesIn, nameOf, pieceName, placeWords, several } from "../src/furniture-words";
 import { kindOf, ranked } from "../src/glyphs";
 import { apart } from "../src/names";
 import { readQuery } from "../src/query";
@@ -45,6 +45,13 @@ describe("furniture in words", () => {
   test("only what has its name in common is numbered", () => {
     const names = namesIn([{ id: "a", category: "stool" }, { id: "b", category: "desk" }, { id: "c", category: "stool" }]);
     expect(Object.fromEntries(names)).toEqual({ a: "stool 1", b: "desk", c: "stool 2" });
+  });
+
+  test("a piece has one name, in the script as in the form that changes it", () => {
+    const [id] = namesIn([{ id: "0/l_shaped_sofa_1", category: "l_shaped_sofa" }]).values();
+    expect([id, nameOf("l_shaped_sofa"), pieceName("0/l_shaped_sofa_1")]).toEqual(["corner sofa", "corner sofa", "corner sofa"]);
+    expect(placeWords({ object_id: "0/l_shaped_sofa_1", furniture: "sofa", room: "living_room" })).toBe("corner sofa, living room");
+    expect(placeWords({ object_id: null, furniture: "floor", room: null })).toBe("floor");
   });
 
   test("what a room is for comes first", () => {

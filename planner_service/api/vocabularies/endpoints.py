@@ -22,23 +22,28 @@ from planner_service.api.vocabularies.schemas import (
     SkillList,
     SkillShown,
 )
+from planner_service.composition.caption_meanings import find_captions
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import captions
-from planner_service.scripts.script import EMOTIONS
+from planner_service.scripts.script import EMOTIONS, SkillWord
 from planner_service.scripts.script_words import NEEDS
 from scene_graphs.furniture import AFFORDANCES, affordances, catalogue, class_of, display_name, group_of
 
 vocabularies_router = APIRouter(prefix="/v1", tags=["vocabularies"])
-Skilled = Annotated[Skill | None, Query(description="Only those for this skill.")]
+Skilled = Annotated[SkillWord | None, Query(description="Only those for this skill.")]
+Words = Annotated[str, Query(max_length=200, description="Only those that have all these words, or mean them.")]
 Affording = Annotated[Literal["sit", "lie", "touch"] | None, Query(description="Only what a body can do this with.")]
 
 
 @vocabularies_router.get("/captions", response_model=CaptionList)
-async def list_captions(skill: Skilled = None) -> CaptionList:
+async def list_captions(skill: Skilled = None, q: Words = "") -> CaptionList:
     """How each skill can be done, in words that the body knows letter for letter."""
-    known = captions()
-    chosen = [skill] if skill else list(Skill)
-    return CaptionList(items=[CaptionShown(caption=text, skill=one) for one in chosen for text in known[one.value]])
+    return CaptionList(
+        items=[
+            CaptionShown(caption=one.caption, skill=one.skill, shows=list(one.shows), others=list(one.others))
+            for one in find_captions(q, skill)
+        ]
+    )
 
 
 @vocabularies_router.get("/emotions", response_model=EmotionList)

@@ -12,6 +12,8 @@ class CaptionShown(BaseModel):
 
     caption: str
     skill: Skill
+    shows: list[str] = Field(description="Deeds of a theme that are seen in it: what it is a gesture of.")
+    others: list[str] = Field(description="Other words for it, which are read as it.")
 
 
 class CaptionList(BaseModel):

@@ -52,6 +52,24 @@ def lines() -> Iterator[Lines]:
     structlog.configure(**as_it_was)
 
 
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+@pytest.mark.usefixtures("lines")  # which leaves logging as it was
+def test_on_a_terminal_lines_are_words_without_a_servers_news_of_itself() -> None:
+    terminal = Terminal()
+    configure_logging("info", terminal)
+    logging.getLogger("uvicorn.error").info("Started server process [1]")
+    structlog.get_logger("sims.http").info(
+        "request", method="GET", path="/v1/skills", status=200, ms=12.3, request_id="abc", story_id=None
+    )
+    logging.getLogger("uvicorn.error").error("it broke")
+    told = re.sub(r"\x1b\[[0-9;]*m", "", terminal.getvalue()).splitlines()
+    assert [line.split("] ")[1].strip() for line in told] == ["GET /v1/skills 200 in 12 ms", "it broke"]
+
+
 class Lines:
     def __init__(self, stream: io.StringIO) -> None:
         self.stream = stream

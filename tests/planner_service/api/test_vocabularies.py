@@ -40,6 +40,12 @@ async def test_every_word_of_a_keyframe_can_be_looked_up(app: FastAPI) -> None:
         known = [(one["skill"], one["caption"]) for one in await items("captions")]
         assert known == [(skill.value, text) for skill in Skill for text in captions()[skill.value]]
         assert {one["skill"] for one in await items("captions?skill=touch")} == {"touch"}
+        assert {one["skill"] for one in await items("captions?skill=sit down")} == {"sitdown"}
+        (clapping, seated) = await items("captions?q=applaud")
+        assert clapping["caption"] == "clapping hands"
+        assert "applaud" in clapping["shows"]
+        assert clapping["others"]
+        assert seated["skill"] == "sitdown"
         emotions = await items("emotions")
         assert [one["emotion"] for one in emotions] == list(Emotion)
         wrong = [word for one in emotions for word in one["words"] if emotion_of(word) != one["emotion"]]

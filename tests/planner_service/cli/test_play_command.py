@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from motion_backend.motion import Skill
+from motion_backend.motion import SKILL_WORDS, Skill
 from planner_service.cli.play import MAX_FAULTS, read_script, unknown_captions
 from planner_service.cli.story import new_folder
 from planner_service.pipeline import RequestError
@@ -68,7 +68,7 @@ def test_all_that_is_wrong_is_told_at_once_and_within_bounds(tmp_path: Path) -> 
 
 
 def test_captions_that_the_body_does_not_know_are_shown_with_those_it_does(tmp_path: Path) -> None:
-    (known, other), _ = read_script(written(tmp_path, [SIT, SIT | {"caption": "siting stil"}]))
+    known, other = read_script(written(tmp_path, [SIT, SIT | {"caption": "siting stil"}])).keyframes
     (line,) = unknown_captions([known, other])
     assert line.startswith("moment 2, caption: 'siting stil' is unknown to the body, which does ")
     near = line.partition("; perhaps ")[2].split(", ")
@@ -94,6 +94,21 @@ def test_what_is_suggested_means_what_was_asked_for_or_is_what_the_mood_does() -
     )
     assert drunk.endswith("; perhaps 'walking drunkenly'")
     assert "perhaps" not in plain
+
+
+@pytest.mark.parametrize("skill", Skill)
+def test_a_skill_may_be_written_as_stories_print_it(skill: Skill, tmp_path: Path) -> None:
+    written_so = (skill.value, skill.words, skill.words.title(), *SKILL_WORDS[skill])
+    rows = [{"skill": word, "caption": "x", "furniture": "sofa"} for word in written_so]
+    assert {one.skill for one in read_script(written(tmp_path, rows)).keyframes} == {skill}
+
+
+def test_a_skill_that_nobody_knows_is_shown_with_both_words_of_each(tmp_path: Path) -> None:
+    with pytest.raises(RequestError) as refused:
+        read_script(written(tmp_path, [WALK | {"skill": "fly"}]))
+    for skill, words in SKILL_WORDS.items():
+        assert skill.value in str(refused.value)
+        assert all(word in str(refused.value) for word in words)
 
 
 def test_no_caption_is_suggested_twice() -> None:

@@ -60,3 +60,12 @@ def test_the_mood_of_a_nameless_script_is_that_of_most_of_it() -> None:
     rows = [("sitdown", "sad", "sofa"), ("touch", "angry", "bookshelf"), ("loco", "sad", "floor")]
     keyframes = [Keyframe(skill=Skill(s), emotion=mood, caption="x", furniture=there) for s, mood, there in rows]
     assert narrate(script_of(keyframes, ""), Character()).title == "A Sad Day on the Sofa"
+
+
+def test_a_mood_is_told_of_the_place_where_it_is() -> None:
+    rows = [
+        Keyframe(skill=Skill.SITDOWN, emotion="sad", caption="right hand on chin, thinking", furniture="sofa"),
+        Keyframe(skill=Skill.TOUCH, emotion="angry", caption="touch medium height", furniture="cabinet"),
+    ]
+    assert narrate(script_of(rows, ""), Character()).title == "A Sad Day on the Sofa"
+    assert narrate(script_of(rows[::-1], ""), Character()).title == "An Angry Day by the Cabinet"

@@ -42,7 +42,7 @@ from planner_service.scripts.script import BeatKind, Keyframe, LongScript, Plann
 from planner_service.themes.beats import beats_of
 from planner_service.themes.lexicon import gerund, past, third_person
 from planner_service.themes.protagonist import cast_by
-from scene_graphs.furniture import display_name
+from scene_graphs.furniture import catalogue, display_name
 
 SAM, EMILY, JAMES = Character("Sam", "they"), Character("Emily", "she"), Character("James", "he")
 PEOPLE = (SAM, EMILY, JAMES, Character("the old man", "he"), Character("my sister", "she"), Character("the twins"))
@@ -238,7 +238,7 @@ def test_what_the_body_is_at_already_is_it(seed: int) -> None:
     ]
     text = narrate(made("He lies.", [], frames), JAMES, seed).text
     assert text.count("bed") == 1, text
-    assert re.search(r"(?:under|beneath) it", text), text
+    assert re.search(r"(?:side|edge) of it", text), text
 
 
 @tries(60)
@@ -456,9 +456,20 @@ def test_variety_uses_every_option_before_any_again() -> None:
 
 def test_a_touch_is_worded_by_height_and_furniture() -> None:
     high, low, prone = "An act of reaching high", "touch low height", "Low touch from a prone position"
-    assert "under" in touches(Keyframe(skill=Skill.TOUCH, caption=low, furniture="bed"))[0]
-    assert "shelf" in touches(Keyframe(skill=Skill.TOUCH, caption=high, furniture="wardrobe"))[0]
-    assert "crouch" in touches(Keyframe(skill=Skill.TOUCH, caption=prone, furniture="lamp"))[0]
+    assert "side" in touches(Keyframe(skill=Skill.TOUCH, caption=low, furniture="bed"))[0]
+    assert "top" in touches(Keyframe(skill=Skill.TOUCH, caption=high, furniture="wardrobe"))[0]
+    assert "knees" in touches(Keyframe(skill=Skill.TOUCH, caption=prone, furniture="lamp"))[0]
+
+
+@for_each("height", ["An act of reaching high", "touch low height", "Low touch from a prone position", "touch it"])
+@for_each("piece", sorted(catalogue().class_of))
+def test_a_touch_is_told_as_a_hand_on_the_outside_of_a_thing(height: str, piece: str) -> None:
+    unseen = (
+        r"open|clos|look|peer|pull|push|into\b|inside|under|beneath|between|drawer|shel(?:f|ves)\b|feel|smooth|pat\b"
+    )
+    moving = r"hand (?:over|along|across)"
+    for phrase in touches(Keyframe(skill=Skill.TOUCH, caption=height, furniture=piece)):
+        assert not re.search(rf"\b(?:{unseen})|{moving}", phrase.replace("{the}", ""))
 
 
 @for_each(
