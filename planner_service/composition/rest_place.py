@@ -65,8 +65,7 @@ def only_stands_for(resting: PlannedKeyframe, read: ReadBeat, deed: Deed, reader
 
 
 def is_sure(read: ReadBeat, deed: Deed) -> bool:
-    """Whether who rests gets up for it, however unlikely it looks: for a thing that is kept somewhere, in so many words,
-    or to go."""
+    """Whether who rests gets up for it, however unlikely it looks: for a thing that is kept somewhere, or to go."""
     fetches = deed.skill is Skill.TOUCH and deed.row.things and bool(deed.row.captions) and not deed.row.stands
     return fetches or (deed.skill is Skill.LOCO and read.clause.verb in _GOES)
 

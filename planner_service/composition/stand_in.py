@@ -14,7 +14,6 @@ from planner_service.composition.rest_place import is_sure
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
-from scene_graphs.furniture import class_of
 
 SEATED_FOR_IT: Final = 0.7
 """Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
@@ -52,13 +51,13 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
     )
     if rises and last.skill is Skill.TOUCH and before.resting.skill is Skill.SITDOWN:
         same = last.furniture == before.resting.furniture and not affords(last.furniture, "lie")
-        if same or (not deed.named and class_of(last.furniture) == class_of(before.resting.furniture)):
+        if same or (not deed.named and affords(last.furniture, "sit")):
             return True  # nobody gets up for a seat
     if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
         return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False
-    if is_sure(read, deed) or not (seated or rises or len(new) > len(done)):
+    if (is_sure(read, deed) and not is_gainsaid(read.clause, done)) or not (seated or rises or len(new) > len(done)):
         return False  # a hand, or steps, where one is
     least = SEATED_FOR_IT if rises or (seated and done[-1].skill is Skill.SITDOWN) else GONE_FOR_IT
     if max(reader.likelihood(read.clause, one) for one in done) < least:

@@ -36,7 +36,7 @@ _ROOMS: Final = {
     "dining_room": r"dining[ -]?room|kitchen",
     "study": r"study room|(?:in|into|to|from|of) (?:the|his|her|their) (?:study|library|office)|home office",
 }
-_LEFT: Final = re.compile(r"\b(?:out of|away from|leav(?:es?|ing)|left) (?:the|his|her|their|my) \w+ ?\w*", re.IGNORECASE)
+_LEFT: Final = re.compile(r"\b(?:out of|away from|leav\w+|left) (?:the|his|her|their|my) \w+ ?\w*", re.IGNORECASE)
 """Rooms that somebody goes out of are not where it is done."""
 _LOUDER: Final = {"stressed": ("drunk", "angry", "sad", "hurried"), "relaxed": ("drunk",)}
 """Moods that a mere hint of another one does not end within a sentence: who is angry paces with anger."""

@@ -65,8 +65,9 @@ _WHAT_IT_IS: Final = re.compile(
 _SO: Final = re.compile(r"\bso (\w+)(?= (?:he|she|they|I|his|her|their|my) )")
 """What comes of how something is done: "laughs so hard | she has to sit down"."""
 _MEANWHILE: Final = re.compile(
-    r"(?<=\w)(,? (?:and|but)|,) (?:at (?:dawn|dusk|night|noon|midnight|sunrise|sunset|last)|(?:(?:in|by) the (?:end|evening|morning)"
-    r"|by (?:dawn|dusk|noon|midnight)|after a (?:while|moment|bit|minute|pause|long time)|(?:some|a long) time later"
+    r"(?<=\w)(,? (?:and|but)|,) (?:at (?:dawn|dusk|night|noon|midnight|sunrise|sunset|last)"
+    r"|(?:(?:in|by) the (?:end|evening|morning)|by (?:dawn|dusk|noon|midnight)|(?:some|a long) time later"
+    r"|after a (?:while|moment|bit|minute|pause|long time)"
     r"|(?:hours|minutes|moments|an hour|a minute|a moment) later)),? (?=([a-z]+)\b)"
 )
 """When it is, between a joint and what is done then: "drinks coffee, and | at dawn | falls asleep"."""

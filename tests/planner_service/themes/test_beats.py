@@ -183,6 +183,13 @@ def test_a_room_is_read_wherever_it_stands() -> None:
     assert rooms_in("she studies hard") == ()
 
 
+def test_a_room_that_somebody_goes_out_of_is_not_where_they_are() -> None:
+    rooms = [
+        rooms_in(text) for text in ("tiptoes out of the bedroom", "leaves the kitchen", "tiptoes into the bedroom")
+    ]
+    assert rooms == [(), (), ("bedroom",)]
+
+
 def test_a_beat_that_somebody_else_found_keeps_its_words_mood_and_kind() -> None:
     for read in beats_of("She is sad. She reads in the study. She does not eat."):
         again = read_beat(read.beat)

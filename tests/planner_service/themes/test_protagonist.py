@@ -92,6 +92,11 @@ def test_whose_mother_calls_is_the_hero_and_not_the_mother() -> None:
     assert hero_of(clauses).lower() == "a teenager"
 
 
+def test_a_baby_is_the_hero_only_where_nobody_is_he_or_she() -> None:
+    assert hero_of(clauses_of_text("The baby is asleep. She tiptoes out.")) != "The baby"
+    assert hero_of(clauses_of_text("The baby crawls to the sofa. It sits down.")) == "The baby"
+
+
 @for_each(
     ("theme", "hero"),
     [

@@ -126,6 +126,11 @@ def test_no_word_of_any_text_is_read_twice(text: str) -> None:
         ("He goes to the kitchen to make tea.", ["goes to the kitchen", "make tea"]),
         ("He lies there crying.", ["lies there", "crying"]),
         ("She walks from room to room.", ["walks from room to room"]),
+        ("She laughs so hard she has to sit down.", ["laughs so hard", "has to sit down"]),
+        # when it is, between a joint and what is done then
+        ("He drinks tea, and at dawn falls asleep.", ["drinks tea", "falls asleep"]),
+        ("He reads, and after a while gets up.", ["reads", "gets up"]),
+        ("She reads at dawn and at night.", ["reads at dawn and at night"]),
         # lists, and where and when
         ("He eats bread and butter, cheese and a pear.", ["eats bread and butter, cheese and a pear"]),
         ("She eats a plum and a pear before she sleeps.", ["eats a plum and a pear", "sleeps"]),
