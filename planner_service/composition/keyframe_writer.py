@@ -443,6 +443,8 @@ class KeyframeWriter:
             self.linked.add(index)
         if part is not None and at in deed.pieces and at != part.keyframes[-1].furniture:
             part = None  # nobody goes elsewhere for what is done where one is
+        if part is not None and self.body.resting is not None and affords(part.keyframes[-1].furniture, "sit"):
+            part = None if skill is Skill.TOUCH else part  # nor from one seat to another
         if part is not None and deed.named and not _is_at(part.keyframes[-1], deed):
             part = None  # the same is done at another place already
         same = part is not None and part.keyframes[-1].skill is skill

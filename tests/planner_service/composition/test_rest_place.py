@@ -29,7 +29,8 @@ def test_who_sleeps_over_their_books_does_so_at_the_desk() -> None:
     asleep = shown(
         planned("She reads at the desk and falls asleep over her homework."), "falls asleep over her homework"
     )
-    assert asleep.skill is Skill.SITDOWN and "forearms on the table" in asleep.caption
+    assert asleep.skill is Skill.SITDOWN
+    assert "forearms on the table" in asleep.caption
 
 
 @pytest.mark.parametrize(
@@ -49,7 +50,9 @@ def test_nobody_goes_anywhere_to_end_what_their_hands_do(seen: str, ends: str) -
 def test_who_sits_gets_up_to_fetch_and_to_leave_but_not_for_their_own_seat() -> None:
     script = planned("He sits on the sofa. He strokes the cushion. He grabs his keys. He leaves.")
     rising = next(at for at, one in enumerate(script.keyframes) if one.skill is Skill.STANDUP)
-    assert script.beats[1].why and not script.beats[2].why and not script.beats[3].why
+    assert script.beats[1].why
+    assert not script.beats[2].why
+    assert not script.beats[3].why
     assert all(one.beat == 2 for one in script.keyframes[rising : rising + 2])
     assert shown(script, "leaves").skill is Skill.LOCO
 
