@@ -46,7 +46,7 @@ from planner_service.composition.rest_place import (
     rises_later,
     sits_up,
 )
-from planner_service.composition.stand_in import is_too_much
+from planner_service.composition.stand_in import SEATS, is_too_much
 from planner_service.composition.whereabouts import is_held, is_worn
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import captions
@@ -443,8 +443,8 @@ class KeyframeWriter:
             self.linked.add(index)
         if part is not None and at in deed.pieces and at != part.keyframes[-1].furniture:
             part = None  # nobody goes elsewhere for what is done where one is
-        if part is not None and self.body.resting is not None and affords(part.keyframes[-1].furniture, "sit"):
-            part = None if skill is Skill.TOUCH else part  # nor from one seat to another
+        if part is not None and self.body.resting is not None and skill is Skill.TOUCH:
+            part = None if furniture.class_of(part.keyframes[-1].furniture) in SEATS else part  # nor to another seat
         if part is not None and deed.named and not _is_at(part.keyframes[-1], deed):
             part = None  # the same is done at another place already
         same = part is not None and part.keyframes[-1].skill is skill

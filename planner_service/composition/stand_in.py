@@ -14,11 +14,14 @@ from planner_service.composition.rest_place import is_sure
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
+from scene_graphs.furniture import class_of
 
 SEATED_FOR_IT: Final = 0.7
 """Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
 GONE_FOR_IT: Final = 0.3
 """and nobody lies down or goes anywhere for what is less likely than this."""
+SEATS: Final = ("seat", "sofa")
+"""Classes of furniture that nobody gets up for from one of them."""
 _FACE: Final = re.compile(
     r"\b(?:breath|heav|let|giv|utter)\w* (?:out )?an? (?:\w+ )?(?:sigh|smile|grin|laugh|giggle|groan|moan|gasp)\b",
     re.IGNORECASE,
@@ -51,7 +54,7 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
     )
     if rises and last.skill is Skill.TOUCH and before.resting.skill is Skill.SITDOWN:
         same = last.furniture == before.resting.furniture and not affords(last.furniture, "lie")
-        if same or (not deed.named and affords(last.furniture, "sit")):
+        if same or (not deed.named and class_of(last.furniture) in SEATS):
             return True  # nobody gets up for a seat
     if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
         return True
