@@ -20,7 +20,7 @@ SEATED_FOR_IT: Final = 0.7
 """Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
 GONE_FOR_IT: Final = 0.3
 """and nobody lies down or goes anywhere for what is less likely than this."""
-SEATS: Final = ("seat", "sofa")
+SEATS: Final = ("seat", "sofa", "bed")
 """Classes of furniture that nobody gets up for from one of them."""
 _FACE: Final = re.compile(
     r"\b(?:breath|heav|let|giv|utter)\w* (?:out )?an? (?:\w+ )?(?:sigh|smile|grin|laugh|giggle|groan|moan|gasp)\b",
