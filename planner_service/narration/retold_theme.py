@@ -58,12 +58,14 @@ _AMBIGUOUS: Final = frozenset(("can", "will", "may", "must", "do", "have", "bein
 _SINGULAR: Final = frozenset(("he", "she", "it", "who"))
 _PLURAL: Final = frozenset(("i", "we", "you", "they"))
 """Who does things in verbs' base forms."""
+_IT_IS: Final = re.compile(r"(“[^”]*”|\"[^\"]*\")|\b([Ii]t|[Hh]e|[Ss]he|[Tt]here|[Tt]hat)['’]s\b(?! been| \w+ed\b)")
+"""What is said, else a contraction that has a past: "it's"."""
 _TENSELESS: Final = ("ing", "participle")
 
 
 def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     """A theme in the past, told of a voice's person."""
-    theme = re.sub(r"(?<!\.)\.\.(?!\.)", ".", theme)
+    theme = _IT_IS.sub(lambda one: one[1] or f"{one[2]} is", re.sub(r"(?<!\.)\.\.(?!\.)", ".", theme))
     clauses = clauses_of_text(theme)
     hero = hero_of(clauses)
     own = called(clauses, hero) or hero.lower()

@@ -247,7 +247,7 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         return False  # "under the sofa cushions", but "as quiet as a cat the burglar climbs in"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
-        ends = not after or after in grammar().prepositions | _PARTICLES | {",", "and"}
+        ends = _goes_on(after) or after in (",", "and")
         goes_on = after in grammar().marks or is_noun(after)
         acts = not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks and at <= 2)
         return (past(base) == base and named) or (is_plural(before) and acts)
