@@ -203,7 +203,8 @@ class DeedReader:
             return None
         if told is not None and told.row.captions and likely.shown < SHOWN:
             return told  # what the table says in so many words
-        if likely.shown < SHOWN or not (clause.verb or min(most, likely.shown) > WORDS_ALONE):
+        told_alone = told is not None and told.named  # "Bed."
+        if likely.shown < SHOWN or not (clause.verb or told_alone or min(most, likely.shown) > WORDS_ALONE):
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
             return told

@@ -41,6 +41,7 @@ from planner_service.composition.rest_place import (
     is_there,
     lies,
     on_feet,
+    on_place_ahead,
     on_seat_ahead,
     only_stands_for,
     rises_later,
@@ -170,6 +171,7 @@ class KeyframeWriter:
         elif deed is not None:
             if self.body.resting is None:
                 deed = on_seat_ahead(deed, read, nexts, self.reader, self.places)
+            deed = on_place_ahead(deed, read, nexts, self.reader)
             self.deeds[index] = deed
             self._tried = deed if lemma_of(read.text.split()[0]) in _AGAIN_VERBS else self._tried
             self._try(index, read, deed, rises_later(nexts, self.reader))

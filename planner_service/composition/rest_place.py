@@ -29,6 +29,8 @@ GETS_THERE: Final = re.compile(
 _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _GOES: Final = ("leave", "exit", "go", "walk", "run", "rush", "hurry")
 """Verbs of who gets up to do it."""
+_DOWN: Final = ("kneel", "bend", "crouch", "stoop", "squat", "get")
+_SLEEPS: Final = ("sleep", "snore", "doze", "nap", "nod")
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
 )
@@ -65,9 +67,10 @@ def only_stands_for(resting: PlannedKeyframe, read: ReadBeat, deed: Deed, reader
 
 
 def is_sure(read: ReadBeat, deed: Deed) -> bool:
-    """Whether who rests gets up for it, however unlikely it looks: for a thing that is kept somewhere, or to go."""
+    """Whether it is done however unlikely it looks: to get up for a thing that is kept somewhere, to go, to sleep."""
     fetches = deed.skill is Skill.TOUCH and deed.row.things and bool(deed.row.captions) and not deed.row.stands
-    return fetches or (deed.skill is Skill.LOCO and read.clause.verb in _GOES)
+    goes = deed.skill is Skill.LOCO and read.clause.verb in _GOES
+    return fetches or goes or (deed.skill in (Skill.SITDOWN, Skill.LIEDOWN) and read.clause.verb in _SLEEPS)
 
 
 def dozing(resting: PlannedKeyframe | None, read: ReadBeat, reader: DeedReader) -> tuple[str, ...]:
@@ -107,6 +110,15 @@ def on_seat_ahead(
         if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit") and then.pieces[0] != "floor":
             return replace(deed, pieces=then.pieces, named=True)
     return deed
+
+
+def on_place_ahead(deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat], reader: DeedReader) -> Deed:
+    """Who gets down to do something does so where that is done: "kneels | to look under the sofa"."""
+    if deed.named or deed.skill is not Skill.TOUCH or read.clause.verb not in _DOWN:
+        return deed
+    purpose = next((one for one in nexts[:1] if one.clause.joint == "to"), None)
+    then = reader.deed(purpose.clause) if purpose is not None else None
+    return replace(deed, pieces=then.pieces, named=True) if then is not None and then.skill is Skill.TOUCH else deed
 
 
 def rises_later(nexts: Sequence[ReadBeat], reader: DeedReader) -> bool:
