@@ -114,8 +114,10 @@ def _let_down(
         return np.array([aside, point[1], point[2]])
 
     ankle = lowered(rotations.rotate(back, pose.ankles[index] - pose.pelvis), high[1])
-    bent = lowered(scale * knee, high[0]) - hip
-    return pose.pelvis + rotations.rotate(pose.hips, ankle), rotations.rotate(pose.hips, bent)
+    leg, bent = rotations.normalize(ankle - hip), lowered(scale * knee, high[0]) - hip
+    # Off the leg alone: a direction along it would swing a knee round it on its way there.
+    aside = rotations.normalize(bent - (bent @ leg) * leg)
+    return pose.pelvis + rotations.rotate(pose.hips, ankle), rotations.rotate(pose.hips, aside)
 
 
 def _own_fold(fold: Fold, own: OwnWay) -> Fold:

@@ -42,7 +42,7 @@ FOREARM: Final = np.array([[0.0, 0.042], [0.6, 0.034]])
 """Shares of a forearm from the elbow, and how thick it is there (metres at 1.70 m)."""
 TURNS, DEEPER = 31, 0.016
 """So many turns of a grip are tried, and how much deeper a palm may be in the surface then (metres)."""
-DEEPEST, SOON = 0.03, 4
+DEEPEST, SOON = 0.02, 4
 """No palm is in a surface deeper than this (metres): so many frames before it would be a hand has come off it."""
 
 

@@ -98,8 +98,7 @@ def touch(
     above, reached = hand(over, 0.0), hand(0.0, 0.0)
     away = replace(start, reach=above.reach, palms=above.palms)
     kneeling = tuple(replace(key, reach=above.reach, palms=above.palms) for key in down)
-    lead = _looking_there(away, reached, row)
-    looks = min(float(np.linalg.norm(lead.head - start.head)) / keys.reach.arriving.looks_rad, 1.0)
+    lead, looks = _looking_there(away, reached, row, keys.reach.arriving.looks_rad)
     if raised:
         kneeling = (_folded(lead, above, laid, row),)
     step_s = row.folding_s if raised else row.kneeling_step_s
@@ -131,18 +130,22 @@ def _folded(lead: Pose, above: Pose, laid: Laid, row: Approach) -> Pose:
     return replace(half, arms=arms, elbows=elbows)
 
 
-def _looking_there(away: Pose, reached: Pose, row: Approach) -> Pose:
-    """Standing with the eyes on the thing: they go first, and the body has just begun to bend."""
+def _looking_there(away: Pose, reached: Pose, row: Approach, looks_rad: float) -> tuple[Pose, float]:
+    """Standing with the eyes on the thing: they go first, and the body has just begun to bend; and how much of the time
+    for it they need. A body whose eyes are almost there has no time to begin in."""
+    head = row.eyes_there_share * reached.head + row.eyes_kept_share * away.head
+    looks = min(float(np.linalg.norm(head - away.head)) / looks_rad, 1.0)
     # In a squat the hand comes past the knees before they rise.
-    share = row.begun_share * max(1 - float(away.pelvis[1] - reached.pelvis[1]) / row.deep_m, 0.0)
+    share = looks * row.begun_share * max(1 - float(away.pelvis[1] - reached.pelvis[1]) / row.deep_m, 0.0)
     turn = rotations.slerp(away.hips, reached.hips, share)
-    return replace(
+    lead = replace(
         away,
-        head=row.eyes_there_share * reached.head + row.eyes_kept_share * away.head,
+        head=head,
         pelvis=away.pelvis + share * (reached.pelvis - away.pelvis),
         spine=away.spine + share * (reached.spine - away.spine),
         hips=turn,
     )
+    return lead, looks
 
 
 def arriving(walked: Pose, hand: str, keys: ReachTable) -> Pose:

@@ -17,7 +17,7 @@ from motion_backend.motion import FPS, Action, PhaseKind, Skill
 from motion_backend.procedural.body_state import Body, Point
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
 from motion_backend.procedural.held_poses import SPINE_LEAN, UP, bend, idle
-from motion_backend.procedural.pose import interpolate, settle_from
+from motion_backend.procedural.pose import Pose, interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
 from motion_backend.procedural.walk.gait import walk_on
@@ -82,10 +82,10 @@ SHORT_WAY = 0.20
 """A body that has not to turn round steps straight to a place nearer than this (metres)."""
 TURNING_ROUND = 1.2
 """A body that is turned away from where it will face by more (radians) does not."""
-SPREAD, ROOM_TO_SPREAD = {"open": "embracing", "balance": "balance_ahead"}, 0.30
-"""Arms that need so much more room beside a way than the body does (metres), and what they do where there is less."""
-NARROW = 0.2
-"""The share of a way that may have less."""
+SPREAD = {"open": "embracing", "balance": "balance_ahead"}
+"""Arms that need room beside a way, and what they do where there is none."""
+IN_POSE, BOTH_OUT = 0.4, 0.6
+"""An arm is in a pose it is this near to (arm lengths); where not both are for so much of a way, that is no room."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
 ONE_LEG_ASIDE, ONE_LEG_LOWER, ONE_LEG_ROLL, OFTEN_LEFT = 0.035, 0.012, 0.06, 0.5
@@ -196,14 +196,23 @@ def _stride(body: Body, path: Array, facing: float | None, style: Walk, onward: 
     def spare(places: Array) -> Array:
         return np.asarray(walkable.field.at(places) - walkable.radius)
 
-    before = SPREAD.get(style.bearing.arms[0])
-    if before is not None and float(np.quantile(spare(resample(points)), NARROW)) < ROOM_TO_SPREAD:
-        body.note("no room for open arms: to the front")
-        style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
+    before, state = SPREAD.get(style.bearing.arms[0]), body.rng.bit_generator.state
     solid = body.scene.obstacles.solid()
     walked = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare, solid.depth)
+    if before is not None and _held_back(walked[0], style.bearing.arms):
+        body.note("no room for open arms: to the front")
+        style = replace(style, bearing=replace(style.bearing, arms=(before, before)))
+        body.rng.bit_generator.state = state
+        walked = walk_on(body.pose, points, end, style, body.skeleton, body.rng, stride, cut, spare, solid.depth)
     frames, body.stride, body.beyond = walked
     body.add(gesture(frames, style.doing))
+
+
+def _held_back(walked: Pose, arms: tuple[str, str]) -> bool:
+    """Whether not both arms are in their pose for most of the time from where one of them is until none is any more."""
+    out = np.linalg.norm(walked.arms - arm_arrays(*arms)[0], axis=-1) < IN_POSE
+    some = np.flatnonzero(out.any(axis=1))
+    return bool(len(some)) and float(out[some[0] : some[-1] + 1].all(axis=1).mean()) < BOTH_OUT
 
 
 def _through(body: Body, path: Array, onward: Point) -> ThroughWay | None:

@@ -19,6 +19,7 @@ from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.segment_masses import centres_of_mass
 from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.foot_skate import skate_ratio, support_slip
+from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import FPS, Action, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.lie.lie_pose import Bed, place_to_lie
@@ -168,6 +169,13 @@ def on_the_floor(caption: str) -> tuple[Action, Motion, BodyState]:
     """Lying down on the floor."""
     action = Action(Skill.LIEDOWN, caption, Emotion.NEUTRAL, "floor", "floor", floor_spot("lie", (3.2, 2.6), 0.7))
     return action, *DIRECTOR.act(HOME, action, after(HOME, seed=2))
+
+
+def test_no_knee_swings_round_its_leg_on_the_way_to_a_side() -> None:
+    for caption in (caption for caption, style in STYLES.items() if style.side != "back" and style.propped):
+        motion = on_the_floor(caption)[1]
+        assert fastest_joint(motion.local_rotations, FPS)[1] < 15, caption
+        assert limits_share(motion.local_rotations) == 0, caption
 
 
 @cache

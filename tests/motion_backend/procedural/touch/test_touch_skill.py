@@ -14,7 +14,11 @@ from small_home import DIRECTOR, ROOM, after
 from motion_backend import rotations
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.motion import Action, Emotion, Motion, Skill
-from motion_backend.skeleton import INDEX
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import standing
+from motion_backend.procedural.touch.reach import _looking_there
+from motion_backend.procedural.touch.touch_keys import touch_keys
+from motion_backend.skeleton import INDEX, build_skeleton
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Placed
@@ -73,6 +77,20 @@ def test_the_eyes_go_to_it_before_the_hand_moves() -> None:
     came = gap(motion)[0] - gap(motion)
     still = int(np.argmax(came > 0.03))
     assert look[still, 1] < -0.15
+
+
+def test_the_less_the_eyes_have_to_go_the_less_a_body_has_begun_to_bend_when_they_are_there() -> None:
+    row, looks_rad = touch_keys().reach.approach, touch_keys().reach.arriving.looks_rad
+    stands = standing(np.zeros(2), 0.0, Bearing(), build_skeleton(1.7))
+    bent = replace(stands, spine=np.array([0.5, 0.0, 0.0]), head=np.array([0.6, 0.0, 0.0]))
+    rates = []
+    for nod in (0.0, 0.3, 0.45, 0.55):
+        away = replace(stands, head=np.array([nod, 0.0, 0.0]))
+        lead, looks = _looking_there(away, bent, row, looks_rad)
+        assert np.linalg.norm(lead.head - bent.head) <= np.linalg.norm(away.head - bent.head)
+        rates.append(np.linalg.norm(lead.spine - away.spine) / looks)
+    assert np.ptp(rates) < 1e-9
+    assert rates[0] > 0
 
 
 def test_a_prone_touch_is_on_the_knees_and_a_low_touch_on_the_feet() -> None:
