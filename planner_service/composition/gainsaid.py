@@ -21,6 +21,9 @@ _HIDDEN: Final = re.compile(rf"\b(under|underneath|beneath|below|behind) ({_THE}
 _INSIDE: Final = re.compile(rf"\b(?:into|inside|in) ({_THE}(?:\w+ ?){{1,2}})")
 _ON_IT: Final = re.compile(rf"\b(?:on|onto|on top of|upon) ({_THE}(?:\w+ ?){{1,2}})")
 
+_CROUCHED: Final = "crouching low"
+"""Of the caption of who makes themselves small by a thing."""
+
 
 def is_gainsaid(clause: Clause, keyframes: Sequence[Keyframe]) -> bool:
     """Whether none of some keyframes can be what a clause tells: by its verb, or by where the body or the hand is."""
@@ -39,6 +42,7 @@ def _is_another_place(clause: Clause, keyframe: Keyframe) -> bool:
     lain = keyframe.skill is Skill.LIEDOWN
     hidden = [(piece, how) for how, place in _HIDDEN.findall(clause.text) for piece in pieces_in(place)]
     covered = lain and any(word in things_called("bedding") for word in clause.lemmas)  # "under the bed covers"
+    covered = covered or _CROUCHED in keyframe.caption  # taken for hiding there
     if any(not (seated and how == "behind" and not affords(piece, "sit")) for piece, how in hidden) and not covered:
         return True  # but one sits behind a desk
     if clause.verb in theme_words()["entering_verbs"] and (hidden or _INSIDE.search(clause.text)):
