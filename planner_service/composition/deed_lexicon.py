@@ -250,6 +250,8 @@ def _at_rest(row: DeedRow, named: Sequence[str]) -> Deed | None:
     """What is done sitting or lying on what is named, of what is else done on one's feet: "weeps on the bed"."""
     for skill, some in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
         fitting = tuple(piece for piece in named if affords(piece, NEEDS[skill]))
+        if skill is Skill.LIEDOWN and row.seated:  # a sofa is sat on
+            fitting = tuple(piece for piece in fitting if furniture.group_of(piece) == "bed")
         if row.skill is Skill.LOCO and some and fitting:
             return Deed(replace(row, skill=skill, captions=some, rests=True), skill, fitting, True)
     return None

@@ -21,6 +21,9 @@ _HIDDEN: Final = re.compile(rf"\b(under|underneath|beneath|below|behind) ({_THE}
 _INSIDE: Final = re.compile(rf"\b(?:into|inside|in) ({_THE}(?:\w+ ?){{1,2}})")
 _ON_IT: Final = re.compile(rf"\b(?:on|onto|on top of|upon) ({_THE}(?:\w+ ?){{1,2}})")
 
+_CROUCHED: Final = "crouching low"
+"""Of the caption of who makes themselves small by a thing."""
+
 
 _HAS_OBJECT: Final = frozenset(("it", "them", "the", "a", "an", "his", "her", "their", "my", "some", "all", "every"))
 """Words that tell that it is a thing which gets there: "hides it in the wardrobe"."""
@@ -43,6 +46,7 @@ def _is_another_place(clause: Clause, keyframe: Keyframe) -> bool:
     lain = keyframe.skill is Skill.LIEDOWN
     hidden = [(piece, how) for how, place in _HIDDEN.findall(clause.text) for piece in pieces_in(place)]
     covered = lain and any(word in things_called("bedding") for word in clause.lemmas)  # "under the bed covers"
+    covered = covered or _CROUCHED in keyframe.caption  # taken for hiding there
     if any(not (seated and how == "behind" and not affords(piece, "sit")) for piece, how in hidden) and not covered:
         return True  # but one sits behind a desk
     enters = clause.verb in theme_words()["entering_verbs"] and _HAS_OBJECT.isdisjoint(clause.lemmas[1:2])

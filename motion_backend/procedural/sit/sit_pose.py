@@ -215,9 +215,9 @@ ON_THE_FLOOR = {
 """Where hands lie instead where knees are up."""
 
 
-CLEAR_OF_KNEES, CLEAR_OF_LEGS = 10.0, 4.0
-"""How far one leans back whose arms are crossed behind knees that are up, and how far ahead at most over crossed legs
-(degrees)."""
+CLEAR_OF_KNEES, CLEAR_OF_LEGS, TO_OWN_FEET = 10.0, 4.0, 34.0
+"""How far one leans back whose arms are crossed behind knees that are up, and how far ahead at most over crossed legs,
+and to one's own feet (degrees)."""
 
 
 def _on_the_floor(style: Seated) -> Seated:
@@ -228,7 +228,8 @@ def _on_the_floor(style: Seated) -> Seated:
     legs = "crossed" if busy and style.legs in ("rest", "together") else style.legs
     shins = "own_shin" in (left, right)
     # Between trunk and knees there is little room for arms.
-    recline = max(style.recline, CLEAR_OF_KNEES if {"crossed", "hugging"} & {left, right} else -CLEAR_OF_LEGS)
+    ahead = TO_OWN_FEET if "ankle" in (left, right) else CLEAR_OF_LEGS
+    recline = max(style.recline, CLEAR_OF_KNEES if {"crossed", "hugging"} & {left, right} else -ahead)
     return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 

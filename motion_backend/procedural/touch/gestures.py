@@ -25,8 +25,15 @@ STANDS: Final = 0.895
 """A standing pelvis (metres at 1.70 m)."""
 _FINGERS: Final = np.array([[0.6, 0.0, 0.8], [0.6, 0.0, -0.8]])
 _BACKS: Final = np.array([[0.0, -1.0, 0.0], [0.0, -1.0, 0.0]])
-PALMS_UP: Final = rotations.basis_to_quat(_FINGERS, _BACKS, rotations.cross(_FINGERS, _BACKS))
-"""Both hands against where the body faces: palms up, fingers ahead and outwards."""
+_UPRIGHT: Final = np.array([[0.0, 0.88, 0.475], [0.0, -0.88, -0.475]])
+_ASIDE: Final = np.array([[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]])
+PALMS: Final = {
+    "up": rotations.basis_to_quat(_FINGERS, _BACKS, rotations.cross(_FINGERS, _BACKS)),
+    "together": rotations.basis_to_quat(_UPRIGHT, _ASIDE, rotations.cross(_UPRIGHT, _ASIDE)),
+}
+"""Both hands against where the body faces: palms up, fingers ahead and outwards; or palm to palm, fingers up."""
+BALL: Final = np.array([0.0, -0.035, 0.12])
+"""The ball of a foot from its ankle (metres at 1.70 m)."""
 
 
 @table
@@ -103,8 +110,8 @@ class MoveKey:
     """When in its time."""
     arms: tuple[str, str] = ("", "")
     """Poses of styles/arms.toml for the left and the right; as they are held where that is empty."""
-    palms_up: bool = False
-    """Whether palms look up, fingers ahead and outwards."""
+    palms: Literal["", "up", "together"] = ""
+    """One of `PALMS`; as they come where that is empty."""
     spine_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Forwards, to the left, to the side."""
     head_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -114,30 +121,36 @@ class MoveKey:
     right_foot_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     right_foot_down_rad: float = 0.0
     """How far its tip points down."""
+    flight_m: float = 0.0
+    """How high the balls of both feet are off the floor; the pelvis is as high as `pelvis_m` says."""
+    heels_up_rad: float = 0.0
+    """How far the soles of both are tipped up on their balls."""
 
     def pose(self, held: Pose) -> Pose:
         """That key of a single held pose."""
         heading, scale = rotations.yaw_to_quat(yaw_of(held.hips)), float(held.pelvis[1]) / STANDS
         named = np.array([bool(name) for name in self.arms])
         wrists, poles = arm_arrays(*(name or "hang" for name in self.arms))
-        lifted = np.array([False, any(self.right_foot_m)])
-        foot = scale * rotations.rotate(heading, np.array(self.right_foot_m))
-        down = rotations.axis_to_quat("x", np.array([0.0, self.right_foot_down_rad]))
+        off = np.array([[0.0, self.flight_m, 0.0], np.add(self.right_foot_m, [0.0, self.flight_m, 0.0])])
+        down = rotations.axis_to_quat("x", self.heels_up_rad + np.array([0.0, self.right_foot_down_rad]))
+        tipped = rotations.axis_to_quat("x", np.asarray(self.heels_up_rad))
+        rolled = BALL - rotations.rotate(tipped, BALL)
         return replace(
             held,
             pelvis=held.pelvis + scale * rotations.rotate(heading, np.array(self.pelvis_m)),
             hips=rotations.compose(held.hips, rotations.axis_to_quat("x", np.array(self.hips_forward_rad))),
             spine=held.spine + self.spine_rad,
             head=held.head + self.head_rad,
-            ankles=held.ankles + lifted[:, None] * foot,
+            ankles=held.ankles + scale * (rotations.rotate(heading, off) + rotations.rotate(held.feet, rolled)),
             feet=rotations.compose(held.feet, down),
+            toes=held.toes + (0.0 if self.flight_m else self.heels_up_rad),
             arms=np.where(named[:, None], wrists, held.arms),
             elbows=np.where(named[:, None], poles, held.elbows),
             # A hand that goes elsewhere leaves what it may have been laid on.
             reaching=np.where(named, 0.0, held.reaching),
-            palms=rotations.compose(heading, PALMS_UP) if self.palms_up else held.palms,
-            pressing=np.where(named, float(self.palms_up), held.pressing),
-            planted=np.where(lifted, 0.0, held.planted),
+            palms=rotations.compose(heading, PALMS[self.palms]) if self.palms else held.palms,
+            pressing=np.where(named, float(bool(self.palms)), held.pressing),
+            planted=np.where(off.any(axis=1), 0.0, held.planted),
         )
 
 
@@ -258,7 +271,7 @@ def _through_keys(held: Pose, time: Array, rows: Move) -> Pose:
     once = [(0.0, base), *((key.at_share, key.pose(base)) for key in rows.keys)]
     every = [(turn + share, pose) for turn in range(times) for share, pose in once] + [(float(times), base)]
     way = interpolate([share * float(time[-1]) / times for share, _ in every], [pose for _, pose in every], FPS)
-    added = ("pelvis", "spine", "head", "ankles", "arms", "elbows", "reaching", "pressing")
+    added = ("pelvis", "spine", "head", "ankles", "toes", "arms", "elbows", "reaching", "pressing")
     moved = {name: getattr(held, name) + getattr(way, name) - getattr(base, name) for name in added}
     turned = {
         name: rotations.compose(getattr(held, name), rotations.compose(rotations.inverse(start), getattr(way, name)))

@@ -180,7 +180,7 @@ def test_what_hardly_anything_shows_is_not_done_though_the_table_has_it() -> Non
 
 
 def test_what_a_mood_shows_more_likely_than_any_caption_is_felt() -> None:
-    (beams,) = beats_of("He jumps for joy.")
+    (beams,) = beats_of("He prances.")
     assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.3)).heard(beams).beat.kind == "feeling"
     assert reader(likely(moods={Emotion.HAPPY: 0.9}, skip=0.95)).heard(beams).beat.kind == "deed"
 

@@ -41,7 +41,7 @@ def acted(scene: SceneRead) -> list[tuple[str, str]]:
         ("She was sitting at the desk.", [("sitdown", "office chair")]),
         ("The man sat at the dining table.", [("sitdown", "dining chair")]),
         ("He took the suit from the wardrobe.", [("touch", "wardrobe")]),
-        ("She put on a coat.", [("touch", "wardrobe")]),
+        ("She hung a coat in the wardrobe.", [("touch", "wardrobe")]),
         ("Anna put the cup on the coffee table.", [("touch", "coffee table")]),
         ("He walked to the desk, sat down and began to write.", [("sitdown", "office chair")]),
         ("He went to bed. He could not sleep.", [("liedown", "bed")]),

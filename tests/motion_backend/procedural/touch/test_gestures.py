@@ -53,6 +53,11 @@ SITTING = {
     "knitting, both hands in the lap": "knit",
     "playing with toys, both hands in front": "toys",
     "playing the guitar": "guitar",
+    "looking at the phone while seated, in the right hand": "phone",
+    "bending to the feet, both hands at the ankles": "feet",
+    "yawning while seated, right hand at the mouth": "yawn_seated",
+    "wiping the face while seated, with the right hand": "wipe_face",
+    "praying while seated, palms together": "pray",
 }
 SPOT = [caption for caption in captions()[Skill.LOCO] if walk_style(Emotion.NEUTRAL, caption).doing]
 SPOT = [caption for caption in SPOT if walk_style(Emotion.NEUTRAL, caption).stays]
@@ -162,12 +167,28 @@ def test_who_does_something_on_the_spot_is_seen_to_do_it_with_both_feet_where_th
     assert verdict is not None
     assert verdict.missed == (), (mood, verdict.missed)
     assert fastest_joint(motion.local_rotations, motion.fps)[1] < FASTEST
-    assert (motion.contacts[:, :2] == 1).all()
-    assert (motion.contacts[:, 2:].min() == 1) == ("kick" not in caption)
+    jumps = "jump" in caption
+    assert (motion.contacts[:, :2] == 1).all() == (not jumps)
+    assert (motion.contacts[:, 2:].min() == 1) == ("kick" not in caption and not jumps)
     feet = joints[:, [INDEX["left_ankle"], INDEX["right_ankle"]]]
     assert np.linalg.norm(feet[-1] - feet[0], axis=-1).max() < 0.01
     # Arms hang again, and the trunk is as it was.
     assert np.linalg.norm(joints[-1, [LEFT, RIGHT]] - joints[0, [LEFT, RIGHT]], axis=-1).max() < 0.12
+
+
+def test_who_jumps_falls_as_everything_falls() -> None:
+    """Between take-off and landing the pelvis rises and sinks again at about 9.8 m/s², and no foot is on the floor."""
+    action = Action(Skill.LOCO, "jumping up and down", Emotion.HAPPY, hold=3.6, keyframe=1)
+    motion, joints = performed(action)
+    flying = motion.contacts.max(axis=1) == 0
+    starts = np.flatnonzero(np.diff(flying.astype(int)) == 1) + 1
+    assert len(starts) >= 2
+    for start in starts:
+        stop = start + int(np.argmin(flying[start:]))
+        time = np.arange(stop - start) / motion.fps
+        curve = np.polyfit(time, joints[start:stop, 0, 1], 2)
+        assert 0.2 < time[-1] < 0.5
+        assert -2 * curve[0] == pytest.approx(9.8, rel=0.25)
 
 
 def test_who_goes_somewhere_to_do_it_there_walks_there_as_one_walks() -> None:
