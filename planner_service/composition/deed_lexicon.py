@@ -115,7 +115,7 @@ class DeedRow:
     unless: tuple[str, ...] = ()
     """Of a gesture: where the words mean something else."""
     small: bool = False
-    """Of a gesture: whether nobody gets up for it."""
+    """Whether nobody gets up for it, of a gesture; else whether nobody who lies does."""
     walks: bool = False
     """Of a gesture: whether it is a way of walking, and not done on the spot."""
 

@@ -398,7 +398,7 @@ def learned_row(clause: Clause, likely: Likely) -> DeedRow:
 
     def of(other: Skill) -> tuple[str, ...]:
         found = [one for (kind, one), share in likely.captions.items() if kind is other and share >= least]
-        return tuple(_idle(other, found, clause))
+        return tuple(_idle(other, found, clause) if clause.verb else found)  # "a cup of tea"
 
     some = of(skill)
     everything = len(some) > ANY * len(_learned(skill))

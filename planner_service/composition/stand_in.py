@@ -10,7 +10,7 @@ from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader
 from planner_service.composition.gainsaid import is_gainsaid
-from planner_service.composition.rest_place import is_sure
+from planner_service.composition.rest_place import is_sure, lies
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
@@ -20,7 +20,7 @@ SEATED_FOR_IT: Final = 0.7
 """Nobody sits down, or gets up, for what is less likely to show a beat that it only stands for;"""
 GONE_FOR_IT: Final = 0.3
 """and nobody lies down or goes anywhere for what is less likely than this."""
-SEATS: Final = ("seat", "sofa", "bed")
+SEATS: Final = ("seat", "sofa")
 """Classes of furniture that nobody gets up for from one of them."""
 _FACE: Final = re.compile(
     r"\b(?:breath|heav|let|giv|utter)\w* (?:out )?an? (?:\w+ )?(?:sigh|smile|grin|laugh|giggle|groan|moan|gasp)\b",
@@ -36,11 +36,11 @@ _POSTURES: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack, reader: DeedReader) -> bool:
     """Whether what a body does for a beat only stands for it, and is more than it would do where it is."""
     new = after.keyframes[len(before.keyframes) :]
-    done = [one for one in new if not connects(one)] or new
+    done = [one for one in new if deed.skill is Skill.LOCO or not connects(one)] or new
     seated = before.resting is None and bool(done) and done[-1].skill in _POSTURES
     if seated and deed.named and deed.skill is done[-1].skill is Skill.LIEDOWN and read.clause.verb in _FALLS:
         return False  # "falls face down on the bed": on it all the same
-    if seated and (is_gainsaid(read.clause, done) or read.clause.verb in EXPRESSIONS or _FACE.search(read.text)):
+    if seated and (is_gainsaid(read.clause, new) or read.clause.verb in EXPRESSIONS or _FACE.search(read.text)):
         return True  # "climbs on a chair" is no sitting on it; nobody sits down for a sigh
     last = done[-1] if done else None
     rises = (
@@ -56,7 +56,8 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
         same = last.furniture == before.resting.furniture and not affords(last.furniture, "lie")
         if same or (not deed.named and class_of(last.furniture) in SEATS):
             return True  # nobody gets up for a seat
-    if rises and (deed.row.small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
+    small = deed.row.small and (deed.is_gesture or lies(before.resting))
+    if rises and (small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
         return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False
