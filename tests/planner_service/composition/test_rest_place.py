@@ -48,7 +48,7 @@ def test_nobody_goes_anywhere_to_end_what_their_hands_do(seen: str, ends: str) -
 
 
 def test_who_sits_gets_up_to_fetch_and_to_leave_but_not_for_their_own_seat() -> None:
-    script = planned("He sits on the sofa. He pats the sofa. He grabs his keys. He leaves.")
+    script = planned("He sits in the armchair. He pats the armchair. He grabs his keys. He leaves.")
     rising = next(at for at, one in enumerate(script.keyframes) if one.skill is Skill.STANDUP)
     assert script.beats[1].why
     assert not script.beats[2].why
