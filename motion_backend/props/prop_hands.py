@@ -70,13 +70,16 @@ class Hands:
         both = grip.hand == "both"
         origin = part.palms.mean(axis=1) if both else part.palms[:, _SIDES.index(grip.hand)]
         along, front = (part.direction(name, grip, origin) for name in (grip.along, grip.front))
-        turns = _framed(along, front, grip.keeps == "front")
+        turns = rotations.compose(_framed(along, front, grip.keeps == "front"), euler_to_quat(grip.turned_deg))
         # What both hands hold apart is as large as whoever holds it.
         size = self.scale if both else 1.0
         positions = origin + rotations.rotate(turns, size * np.array(grip.offset_m))
         if grip.stands:
             way = rotations.rotate(turns, UP)
             positions = positions - way * (positions[:, 1:2] / np.maximum(way[:, 1:2], 0.3))
+        if grip.still:
+            positions = np.tile(np.median(positions, axis=0), (len(positions), 1))
+            turns = np.tile(turns[len(turns) // 2], (len(turns), 1))
         return positions, rotations.continuous(turns), size
 
     def _part(self, start: int, stop: int) -> Hands:
@@ -97,8 +100,8 @@ class Hands:
                 found = self._of_hand(name, grip)
             case "jaw" | "crown":
                 found = rotations.rotate(self.head, np.array(JAW) if name == "jaw" else UP)
-            case "from_mouth":
-                found = origin - self._in_head(MOUTH)
+            case "inward":
+                found = rotations.rotate(self.head, -LEFT if grip.hand == "left" else LEFT)
             case _:
                 found = self._in_head({"face": EYES, "mouth": MOUTH, "head": SKULL}[name]) - origin
         return rotations.normalize(found)
@@ -111,6 +114,12 @@ class Hands:
         own = {"fingers": [LEFT, -LEFT], "palm": [-UP, -UP], "thumb": [AHEAD, AHEAD]}[name]
         both = rotations.rotate(self.turns, np.array(own))  # (T, 2, 3)
         return both.mean(axis=1) if grip.hand == "both" else both[:, _SIDES.index(grip.hand)]
+
+
+def euler_to_quat(degrees: tuple[float, float, float]) -> Array:
+    """Turns about x, then y, then z, as one. (4,)."""
+    x, y, z = (rotations.axis_to_quat(axis, np.radians(angle)) for axis, angle in zip("xyz", degrees, strict=True))
+    return rotations.compose(z, rotations.compose(y, x))
 
 
 def _framed(along: Array, front: Array, keeps_front: bool) -> Array:

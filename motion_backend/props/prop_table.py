@@ -12,25 +12,25 @@ from scene_graphs.data_tables import read_table, require_known, require_unlike, 
 Vector = tuple[float, float, float]
 Direction = Literal[
     "up", "down", "ahead", "left", "trunk", "across", "fingers", "palm", "thumb",
-    "face", "mouth", "from_mouth", "head", "jaw", "crown",
+    "face", "mouth", "head", "jaw", "crown", "inward",
 ]  # fmt: skip
-"""Of the world (up, down), of the chest (ahead, left, and up the trunk), from the right to the left hand (across), of the
-hand, or of both between them (fingers, palm, thumb), from there to the eyes, to or from the mouth and to the middle of the
-head, up the head (crown), and from the chin past the ear (jaw)."""
+"""Of the world (up, down), of the chest (ahead, left, and up the trunk), from the right to the left hand (across), of
+the hand, or of both between them (fingers, palm, thumb), from there to the eyes, the mouth and the middle of the head,
+of the head: up (crown), from the chin past the ear (jaw), and to its middle from the side of that hand (inward)."""
 
 
 @table
 class PropPart:
-    """A block or an upright cylinder between two corners, in the frame of its prop (metres)."""
+    """A block, an upright cylinder or a pillow thick along z, between two corners in the frame of its prop (metres)."""
 
     low: Vector
     high: Vector
     color: Vector
     """sRGB."""
-    form: Literal["block", "cylinder"] = "block"
+    form: Literal["block", "cylinder", "pillow"] = "block"
     bevel: float = 0.0
     taper: float = 1.0
-    """Of a cylinder: the upper radius over the lower."""
+    """How wide it is at its upper end against its lower one."""
     segments: int = 10
     turned_deg: Vector = (0.0, 0.0, 0.0)
     """About x, then y, then z, through its middle."""
@@ -50,6 +50,10 @@ class Grip:
     """Which of them it keeps to where they are not at right angles."""
     offset_m: Vector = (0.0, 0.0, 0.0)
     """From the palm, or the middle between both, to its origin, in its own frame."""
+    turned_deg: Vector = (0.0, 0.0, 0.0)
+    """How it is turned in that frame: about x, then y, then z."""
+    still: bool = False
+    """Whether it stays where the hand mostly is: what lies on a table."""
     stands: bool = False
     """Whether it is pushed along y until it stands on the floor."""
 

@@ -1,13 +1,15 @@
 """Where props are in every frame of a motion: they follow the hands of whoever moved the body.
 
 A prop is there while the hands are where its caption has them: lifted, and near to where they are for most of the
-keyframe. It grows in the hand as that comes, and is gone before the hand is down. The same motion and role give the same.
+keyframe. It grows in the hand as that comes, and is gone before the hand is down. The same motion and role give the
+same.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -20,7 +22,7 @@ from motion_backend.props.prop_table import Held, held_in
 from motion_backend.rotations import Array
 
 LIFTED: Final = -0.63
-"""A wrist is lifted where it is higher than this over its shoulder, along the chest (arm lengths); hanging it is at -0.95."""
+"""A wrist is lifted where it is higher than this over its shoulder, along the chest (arm lengths): it hangs at -0.95."""
 NEAR: Final = 0.30
 """As far as hands may be from where they hold it (arm lengths)."""
 SETTLED: Final = 0.3
@@ -119,7 +121,7 @@ def _runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
 def _without_gaps(flags: NDArray[np.bool_], longest: int) -> NDArray[np.bool_]:
     """The same with True where it is False for no longer than that between two runs."""
     filled, runs = flags.copy(), _runs(flags)
-    for (_, stop), (start, _) in zip(runs, runs[1:], strict=False):
+    for (_, stop), (start, _) in pairwise(runs):
         if start - stop <= longest:
             filled[stop:start] = True
     return filled

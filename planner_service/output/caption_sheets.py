@@ -38,7 +38,7 @@ def vocabulary_sheets(skills: Sequence[Skill], room: str | None, seed: int) -> I
 
 def _page(trials: Sequence[Trial]) -> Image:
     done = [perform(trial) for trial in trials]
-    return sheet([(_title(one), one.motion) for one in done], done[0].home)
+    return sheet([(_title(one), one.motion) for one in done], done[0].home, roles=[one.role for one in done])
 
 
 def _title(done: Performance) -> str:
