@@ -15,7 +15,7 @@ from motion_backend.skeleton import ARM_LENGTH, INDEX
 
 PALM: Final = (0.075, 0.02)
 """From the wrist to the middle of the palm, along the fingers and out of the hand (metres at 1.70 m)."""
-EYES, MOUTH, SKULL, JAW = (0.0, 0.085, 0.09), (0.0, 0.015, 0.10), (0.0, 0.06, 0.0), (0.0, 0.85, -0.53)
+EYES, MOUTH, JAW = (0.0, 0.085, 0.09), (0.0, 0.015, 0.10), (0.0, 0.85, -0.53)
 """In the head's frame: places (metres at 1.70 m), and the way from the chin past the ear."""
 UP: Final = np.array([0.0, 1.0, 0.0])
 LEFT, AHEAD = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
@@ -98,12 +98,12 @@ class Hands:
                 found = self.palms[:, 0] - self.palms[:, 1]
             case "fingers" | "palm" | "thumb":
                 found = self._of_hand(name, grip)
-            case "jaw" | "crown":
-                found = rotations.rotate(self.head, np.array(JAW) if name == "jaw" else UP)
+            case "jaw" | "crown" | "nose":
+                found = rotations.rotate(self.head, {"jaw": np.array(JAW), "crown": UP, "nose": AHEAD}[name])
             case "inward":
                 found = rotations.rotate(self.head, -LEFT if grip.hand == "left" else LEFT)
             case _:
-                found = self._in_head({"face": EYES, "mouth": MOUTH, "head": SKULL}[name]) - origin
+                found = self._in_head({"face": EYES, "mouth": MOUTH}[name]) - origin
         return rotations.normalize(found)
 
     def _in_head(self, place: tuple[float, float, float]) -> Array:

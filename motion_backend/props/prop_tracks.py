@@ -22,7 +22,7 @@ from motion_backend.props.prop_table import Held, held_in
 from motion_backend.rotations import Array
 
 LIFTED: Final = -0.63
-"""A wrist is lifted where it is higher than this over its shoulder, along the chest (arm lengths): it hangs at -0.95."""
+"""A wrist is lifted where it is higher than this over the shoulder, along the chest (arm lengths); hanging is -0.95."""
 NEAR: Final = 0.30
 """As far as hands may be from where they hold it (arm lengths)."""
 SETTLED: Final = 0.3
@@ -137,4 +137,5 @@ def _tracks(hands: Hands, held: Held, there: NDArray[np.bool_]) -> Iterator[Prop
         share = share * share * (3 - 2 * share)
         for grip in held.props:
             positions, turns, size = hands.placed(grip, start, stop)
-            yield PropTrack(grip.prop, start, positions, turns, size * share)
+            palm = hands.palms[start:stop, 0 if grip.hand == "left" else 1]
+            yield PropTrack(grip.prop, start, palm + share[:, None] * (positions - palm), turns, size * share)
