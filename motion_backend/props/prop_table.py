@@ -104,4 +104,5 @@ def prop_table() -> Props:
 
 def held_in(skill: Skill, caption: str) -> Held | None:
     """What a caption has in the hands, by the first row that knows its words; None for nothing."""
-    return next((row for row in prop_table().held if row.is_of(skill, caption)), None)
+    look = caption.rpartition(";")[2]  # before it stands what is done; see planner_service/scripts/caption_actions.py
+    return next((row for row in prop_table().held if row.is_of(skill, look)), None)
