@@ -29,7 +29,7 @@ from planner_service.scripts.captions import captions
 KNOWN = [(Skill(skill), caption) for skill, some in captions().items() for caption in some]
 HOLDING = [(skill, caption) for skill, caption in KNOWN if held_in(skill, caption)]
 THINGS = r"\b(cup|book|paper|phone|controller|guitar|pillow|toys|keyboard)\b"
-DOINGS = r"\b(carrying|sweeping|combing|knitting|hugging|writing|eating|drinking|pouring|stirring|wiping with)\b"
+DOINGS = r"\b(both hands hold|carrying|sweeping|combing|knitting|hugging|writing|eating|drinking|pouring|stirring|wiping with)\b"
 """What is only done with something, where a caption does not say with what."""
 NOTHING = r"face"
 """Of the body itself."""
