@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, Final, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
-from motion_backend.body.cast import Look, Role
+from motion_backend.body.cast import Look, Role, acted_captions
 from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
@@ -224,7 +224,7 @@ class Story:
 
     @property
     def role(self) -> Role:
-        """Who is seen, and what the face shows."""
+        """Who is seen, what the face shows, and what the hands hold."""
         return role_of(self.planned.character, self.actions, self.planned.script)
 
 
@@ -326,14 +326,14 @@ def actor(request: StoryRequest, script: LongScript) -> Character:
 
 
 def role_of(character: Character, actions: Sequence[Action], script: LongScript) -> Role:
-    """Who is seen acting the actions of a script: the look, and what the face shows in each keyframe."""
+    """Who is seen acting the actions of a script: the look, what face and hands show in each keyframe."""
     emotions = {action.keyframe: action.emotion for action in actions}
     asleep = frozenset(
         action.keyframe
         for action in actions
         if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
     )
-    return Role(Look.of(character), emotions, asleep)
+    return Role(Look.of(character), emotions, asleep, acted_captions(actions))
 
 
 def _told_of(action: Action, script: LongScript) -> str:

@@ -84,7 +84,8 @@ def draw_board(story: Story, path: Path) -> np.ndarray:
 def draw_acted() -> np.ndarray:
     """A contact sheet of our body, as `sims clips sheet` draws it. (H, W, 3)."""
     done = [perform(Trial(skill, caption, *ACTED_IN)) for skill, caption in ACTED]
-    return sheet([(f"{one.trial.skill}: {one.trial.caption}", one.motion) for one in done], done[0].home)
+    rows = [(f"{one.trial.skill}: {one.trial.caption}", one.motion) for one in done]
+    return sheet(rows, done[0].home, roles=[one.role for one in done])
 
 
 def draw_found(index: LayoutIndex, path: Path) -> None:

@@ -5,7 +5,7 @@ A look changes the surface alone. The skeleton stays that of the height, so that
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Final, Literal, get_args
@@ -13,7 +13,7 @@ from typing import Final, Literal, get_args
 import numpy as np
 
 from motion_backend.body.mannequin_mesh import MAX_PROPORTION, MIN_PROPORTION, Proportions
-from motion_backend.motion import Character, Emotion
+from motion_backend.motion import Action, Character, Emotion, Skill
 from scene_graphs.data_tables import read_table, require_known, table
 
 Color = tuple[float, float, float]
@@ -211,13 +211,20 @@ def _bounded(ratio: float) -> float:
 
 @dataclass(frozen=True)
 class Role:
-    """Somebody seen acting: the look, and what the face is to show."""
+    """Somebody seen acting: the look, what the face is to show, and what is in the hands."""
 
     look: Look = field(default_factory=Look)
     emotions: Mapping[int, Emotion] = field(default_factory=dict)
     """By keyframe; neutral where it is not named."""
     asleep: frozenset[int] = frozenset()
     """Keyframes with closed eyes."""
+    captions: Mapping[int, tuple[Skill, str]] = field(default_factory=dict)
+    """What is acted, by keyframe: the hands are empty where it is not named."""
+
+
+def acted_captions(actions: Sequence[Action]) -> dict[int, tuple[Skill, str]]:
+    """What actions have a role do, by keyframe."""
+    return {action.keyframe: (action.skill, action.caption) for action in actions}
 
 
 PLAIN: Final = Role()

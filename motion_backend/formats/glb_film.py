@@ -1,4 +1,4 @@
-"""Motions, homes and films as GLB: the skinned mannequin with its animation, and furniture around it."""
+"""Motions, homes and films as GLB: the skinned mannequin with its animation, what it holds, and furniture around it."""
 
 from __future__ import annotations
 
@@ -13,8 +13,10 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.body.character_mesh import build_character
 from motion_backend.body.face_track import expression, face_track
 from motion_backend.body.skinning import Morphs, SkinnedMesh
-from motion_backend.formats.gltf_document import ARRAY_BUFFER, Document
+from motion_backend.formats.glb_props import add_props, bends
+from motion_backend.formats.gltf_document import ARRAY_BUFFER, Animation, Document
 from motion_backend.motion import Emotion, Motion
+from motion_backend.props import prop_tracks
 from scene_graphs.json_fields import Json
 
 if TYPE_CHECKING:
@@ -22,8 +24,6 @@ if TYPE_CHECKING:
 
 GROUPS = ("floor", "wall", "ceiling", "door", "window", "rug")
 """Meshes whose names begin so are merged into a node of that name; all others into "furniture"."""
-STRAIGHT = 1e-3
-"""A change of pace, a frame, that nobody sees in a face."""
 
 
 class StaticMesh(Protocol):
@@ -53,8 +53,16 @@ class StaticMesh(Protocol):
 
 def body_glb(motion: Motion, role: Role = PLAIN) -> bytes:
     """The animated character alone."""
-    document = Document()
-    return document.to_glb(_add_body(document, motion, role))
+    document, animation = Document(), Animation()
+    roots = _add_body(document, animation, motion, role)
+    return _finished(document, animation, motion, roots)
+
+
+def props_glb(motion: Motion, role: Role) -> bytes:
+    """What is in the hands alone, animated; empty where that is nothing."""
+    document, animation = Document(), Animation()
+    roots = add_props(document, animation, prop_tracks(motion, role), motion)
+    return _finished(document, animation, motion, roots) if roots else b""
 
 
 def scene_glb(home: Home) -> bytes:
@@ -63,9 +71,18 @@ def scene_glb(home: Home) -> bytes:
 
 
 def film_glb(home: Home, motion: Motion, role: Role = PLAIN) -> bytes:
-    """The home and the character acting in it, in one file."""
-    document = Document()
-    return document.to_glb([*_add_meshes(document, home_meshes_of(home)), *_add_body(document, motion, role)])
+    """The home and the character acting in it, with what is in the hands, in one file."""
+    document, animation = Document(), Animation()
+    still = _add_meshes(document, home_meshes_of(home))
+    body = _add_body(document, animation, motion, role)
+    props = add_props(document, animation, prop_tracks(motion, role), motion)
+    return _finished(document, animation, motion, [*still, *body, *props])
+
+
+def _finished(document: Document, animation: Animation, motion: Motion, roots: list[int]) -> bytes:
+    extras: Json = {"fps": motion.fps, "keyframes": _spans(motion)}
+    document.add("animations", animation.to_dict() | {"extras": extras})
+    return document.to_glb(roots)
 
 
 def meshes_to_glb(meshes: Iterable[StaticMesh]) -> bytes:
@@ -117,7 +134,7 @@ def merged(meshes: Sequence[StaticMesh]) -> tuple[NDArray[np.float32], NDArray[n
     return vertices, np.concatenate([m.faces + start for m, start in zip(meshes, starts, strict=True)])
 
 
-def _add_body(document: Document, motion: Motion, role: Role) -> list[int]:
+def _add_body(document: Document, animation: Animation, motion: Motion, role: Role) -> list[int]:
     """The nodes of the body and of its face, and its pelvis's node."""
     joints = _add_joints(document, motion)
     inverse_bind = np.tile(np.eye(4, dtype=np.float32), (len(joints), 1, 1))
@@ -131,7 +148,9 @@ def _add_body(document: Document, motion: Motion, role: Role) -> list[int]:
         document.add("nodes", {"name": name, "mesh": _add_skinned_mesh(document, mesh, name), "skin": skin})
         for name in ("body", "face")
     )
-    _add_animation(document, motion, joints, face, face_track(motion, role))
+    _animate(document, animation, motion, joints)
+    if len(motion) > 1:
+        _animate_face(document, animation, motion, face, face_track(motion, role))
     return [body, face, joints[0]]
 
 
@@ -209,44 +228,29 @@ def _shares(weights: NDArray[np.floating]) -> NDArray[np.uint8]:
     return np.asarray(shares, dtype=np.uint8)
 
 
-def _add_animation(
-    document: Document, motion: Motion, joints: list[int], face: int, track: NDArray[np.floating]
-) -> int:
-    """Every frame a key: the pelvis's way and the turn of every joint that turns at all; what the face does as seldom
-    as lines between keys allow.
+def _animate(document: Document, animation: Animation, motion: Motion, joints: list[int]) -> None:
+    """Every frame a key: the pelvis's way and the turn of every joint that turns at all.
 
-    Turns are 16-bit, which halves the file and moves no joint by more than 0.2 mm; so is what the face does.
+    Turns are 16-bit, which halves the file and moves no joint by more than 0.2 mm.
     """
     times = document.accessor(np.arange(len(motion), dtype=np.float32) / np.float32(motion.fps), bounds=True)
-    samplers: list[Json] = []
-    channels: list[Json] = []
-
-    def animate(joint: int, path: str, output: int) -> None:
-        samplers.append({"input": times, "output": output})
-        channels.append({"sampler": len(samplers) - 1, "target": {"node": joints[joint], "path": path}})
-
-    animate(0, "translation", document.accessor(motion.root_positions.astype(np.float32)))
+    way = document.accessor(motion.root_positions.astype(np.float32))
+    animation.animate(joints[0], "translation", times, way)
     turns = rotations.continuous(rotations.normalize(motion.local_rotations.astype(np.float64)))
     steps = np.rint(turns * np.iinfo(np.int16).max).astype(np.int16)
-    for joint in range(len(joints)):
+    for joint, node in enumerate(joints):
         if joint == 0 or (steps[:, joint] != steps[0, joint]).any():
-            animate(joint, "rotation", document.accessor(steps[:, joint], normalized=True))
-    if len(motion) > 1:
-        kept = _bends(track)
-        seconds = document.accessor((kept / motion.fps).astype(np.float32), bounds=True)
-        shares = np.rint(np.clip(track[kept], -1, 1) * np.iinfo(np.int16).max).astype(np.int16)
-        output = document.accessor(shares.reshape(-1), normalized=True)
-        samplers.append({"input": seconds, "output": output})
-        channels.append({"sampler": len(samplers) - 1, "target": {"node": face, "path": "weights"}})
-    extras: Json = {"fps": motion.fps, "keyframes": _spans(motion)}
-    return document.add("animations", {"name": "motion", "samplers": samplers, "channels": channels, "extras": extras})
+            animation.animate(node, "rotation", times, document.accessor(steps[:, joint], normalized=True))
 
 
-def _bends(track: NDArray[np.floating]) -> NDArray[np.integer]:
-    """The frames between which a track (T, K) runs straight: those around every change of pace, the first, the last."""
-    pace = np.diff(track, axis=0)
-    bent = np.any(np.abs(np.diff(pace, axis=0)) > STRAIGHT, axis=1)
-    return np.flatnonzero(np.concatenate([[True], bent, [True]]))
+def _animate_face(
+    document: Document, animation: Animation, motion: Motion, face: int, track: NDArray[np.floating]
+) -> None:
+    """What the face does, in 16 bits, as seldom as lines between keys allow."""
+    kept = bends(track)
+    seconds = document.accessor((kept / motion.fps).astype(np.float32), bounds=True)
+    shares = np.rint(np.clip(track[kept], -1, 1) * np.iinfo(np.int16).max).astype(np.int16)
+    animation.animate(face, "weights", seconds, document.accessor(shares.reshape(-1), normalized=True))
 
 
 def _spans(motion: Motion) -> list[dict[str, Any]]:

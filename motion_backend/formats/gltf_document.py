@@ -20,6 +20,23 @@ ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER = 34962, 34963
 _MAGIC, _JSON_CHUNK, _BINARY_CHUNK = 0x46546C67, 0x4E4F534A, 0x004E4942
 
 
+class Animation:
+    """What is animated of a document, node by node."""
+
+    def __init__(self) -> None:
+        self.samplers: list[Json] = []
+        self.channels: list[Json] = []
+
+    def animate(self, node: int, path: str, times: int, output: int) -> None:
+        """Have a node's "translation", "rotation", "scale" or "weights" follow an accessor at the times of another."""
+        self.samplers.append({"input": times, "output": output})
+        self.channels.append({"sampler": len(self.samplers) - 1, "target": {"node": node, "path": path}})
+
+    def to_dict(self) -> Json:
+        """As the document has it."""
+        return {"name": "motion", "samplers": self.samplers, "channels": self.channels}
+
+
 class Document:
     """Collects the parts of one glTF; every `add` answers the index other parts refer to."""
 

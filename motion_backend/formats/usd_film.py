@@ -21,7 +21,9 @@ from motion_backend.body.character_mesh import build_character
 from motion_backend.body.face_track import face_track
 from motion_backend.body.skinning import SkinnedMesh
 from motion_backend.formats.glb_film import StaticMesh, groups_of, home_meshes_of, merged
+from motion_backend.formats.glb_props import ROUGHNESS, lanes, of_one_color, prop_keys
 from motion_backend.motion import Motion
+from motion_backend.props import prop_tracks
 from motion_backend.skeleton import Skeleton
 from scene_graphs.errors import UserError
 
@@ -45,7 +47,10 @@ def check_usd() -> None:
 
 
 def film_usd(home: Home | None, motion: Motion, role: Role = PLAIN) -> bytes:
-    """The home, if there is one, and the character acting in it, in one file. UsdUnavailableError."""
+    """The home, if there is one, and the character acting in it, with what is in the hands, in one file.
+
+    UsdUnavailableError.
+    """
     check_usd()
     from pxr import Usd, UsdGeom
 
@@ -64,6 +69,7 @@ def film_usd(home: Home | None, motion: Motion, role: Role = PLAIN) -> bytes:
             UsdGeom.Xform.Define(stage, f"{ROOT}/Home")
             _add_home(stage, home_meshes_of(home))
         _add_body(stage, motion, role)
+        _add_props(stage, motion, role)
         stage.GetRootLayer().Save()
         del stage
         return path.read_bytes()
@@ -155,6 +161,28 @@ def _add_meshes(stage: Any, mesh: SkinnedMesh, skeleton: Any) -> bool:
         binding.CreateGeomBindTransformAttr().Set(Gf.Matrix4d(1.0))
         any_face = _add_shapes(stage, mesh, used, path, binding) or any_face
     return any_face
+
+
+def _add_props(stage: Any, motion: Motion, role: Role) -> None:
+    """What is in the hands: an Xform a prop, as the GLB's nodes: of no size where it is not there."""
+    from pxr import Gf, UsdGeom
+
+    rows = lanes(prop_tracks(motion, role))
+    if rows:
+        UsdGeom.Xform.Define(stage, f"{ROOT}/Props")
+    for number, lane in enumerate(rows):
+        name = lane[0].prop
+        path = f"{ROOT}/Props/{_token(name)}_{number}"
+        prop = UsdGeom.Xform.Define(stage, path)
+        place, turn, scale = prop.AddTranslateOp(), prop.AddOrientOp(), prop.AddScaleOp()
+        keys = (column.tolist() for column in prop_keys(lane, len(motion)))
+        for frame, position, (x, y, z, w), size in zip(*keys, strict=True):
+            place.Set(Gf.Vec3d(*position), frame)
+            turn.Set(Gf.Quatf(w, x, y, z), frame)
+            scale.Set(Gf.Vec3f(size), frame)
+        for look, (color, corners) in enumerate(of_one_color(name)):
+            faces = np.arange(len(corners)).reshape(-1, 3)
+            _bind(stage, _mesh(stage, f"{path}/{_token(name)}_{look}", corners, faces), color, ROUGHNESS)
 
 
 def _add_shapes(stage: Any, mesh: SkinnedMesh, used: NDArray[np.integer], path: str, binding: Any) -> bool:

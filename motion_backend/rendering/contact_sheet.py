@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend import rotations
+from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion
 from motion_backend.rendering.motion_figures import Acting, Prop, home_props
 from motion_backend.rendering.rasterizer import Camera
@@ -51,10 +52,13 @@ FEET = {"left": "#1864ab", "right": "#c92a2a"}
 INK, WAY = "#23262b", "#868e96"
 
 
-def sheet(motions: Sequence[tuple[str, Motion]], home: Home | None = None, columns: int = 8) -> Image:
+def sheet(
+    motions: Sequence[tuple[str, Motion]], home: Home | None = None, columns: int = 8, roles: Sequence[Role] = ()
+) -> Image:
     """A page with a row for every motion, under its title; all furniture near the body is drawn where a home is given.
 
     A row shows `columns` moments evenly spread over its motion: above from the front quarter, below from the side.
+    `roles` say for each of them who acts it, and what is in the hands.
     """
     from matplotlib.figure import Figure
 
@@ -66,7 +70,8 @@ def sheet(motions: Sequence[tuple[str, Motion]], home: Home | None = None, colum
     figure = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
     plain: dict[str, Any] = {"color": INK, "va": "center", "parse_math": False}
     for place, (title, motion) in enumerate(motions):
-        row, bottom = _Row(motion, props, columns), height - (place + 1) * tall + GAP
+        row = _Row(motion, props, columns, roles[place] if roles else PLAIN)
+        bottom = height - (place + 1) * tall + GAP
         headline = (bottom + 2 * CELL[1] + HEAD / 2) / height
         figure.text(6 / width, headline, title, fontsize=10, weight="bold", **plain)
         figure.text(1 - 6 / width, headline, facts(motion), fontsize=8, ha="right", **plain)
@@ -110,11 +115,12 @@ class _Row:
     motion: Motion
     props: Sequence[Prop]
     columns: int
+    role: Role
 
     @cached_property
     def acting(self) -> Acting:
         """Who is drawn."""
-        return Acting.of(self.motion)
+        return Acting.of(self.motion, self.role)
 
     @cached_property
     def frames(self) -> list[int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.body.character_mesh import build_character
 from motion_backend.body.face_track import face_track
 from motion_backend.body.skinning import SkinnedMesh, skin
+from motion_backend.props import PropTrack, prop_shape, prop_tracks
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid
 from motion_backend.walls import Side
@@ -34,19 +35,58 @@ class Acting:
     mesh: SkinnedMesh
     face: NDArray[np.floating]
     """Shares of what the face does. (T, K)."""
+    props: tuple[PropTrack, ...] = ()
+    """What is in the hands."""
 
     @staticmethod
     def of(motion: Motion, role: Role = PLAIN) -> Acting:
-        """A motion with a look and a face."""
-        return Acting(motion, build_character(motion.skeleton, role.look), face_track(motion, role))
+        """A motion with a look, a face and what is in the hands."""
+        mesh, face = build_character(motion.skeleton, role.look), face_track(motion, role)
+        return Acting(motion, mesh, face, prop_tracks(motion, role))
 
     def solids(self, frames: Sequence[int], opacity: float = 1.0) -> list[Solid]:
-        """The body at some frames."""
+        """The body at some frames, each with what it holds."""
         mesh, motion, chosen = self.mesh, self.motion, np.asarray(frames)
         poses = (motion.root_positions[chosen], motion.local_rotations[chosen])
         vertices, normals = skin(mesh, motion.skeleton, *poses, self.face[chosen])
-        drawn = zip(vertices, normals, strict=True)
-        return [Solid(v, mesh.faces, mesh.face_colors, n, opacity=opacity) for v, n in drawn]
+        bodies = [
+            _Triangles(points, turned, mesh.faces, mesh.face_colors)
+            for points, turned in zip(vertices, normals, strict=True)
+        ]
+        whole = [_joined([body, *self._held(frame)]) for frame, body in zip(chosen.tolist(), bodies, strict=True)]
+        return [Solid(all_.vertices, all_.faces, all_.colors, all_.normals, opacity=opacity) for all_ in whole]
+
+    def _held(self, frame: int) -> list[_Triangles]:
+        """What is in the hands at a frame."""
+        found = []
+        for track in self.props:
+            now = frame - track.start
+            if 0 <= now < len(track.positions):
+                shape = prop_shape(track.prop)
+                moved = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
+                found.append(_Triangles(*moved, shape.faces, shape.colors))
+        return found
+
+
+class _Triangles(NamedTuple):
+    """Vertices and normals (V, 3), faces (F, 3) and their colours (F, 3)."""
+
+    vertices: NDArray[np.floating]
+    normals: NDArray[np.floating]
+    faces: NDArray[np.integer]
+    colors: NDArray[np.floating]
+
+
+def _joined(parts: Sequence[_Triangles]) -> _Triangles:
+    """Several as one."""
+    if len(parts) == 1:
+        return parts[0]
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])
+    faces = [part.faces + start for part, start in zip(parts, starts, strict=True)]
+    vertices, normals, colors = (
+        np.concatenate([getattr(part, name) for part in parts]) for name in ("vertices", "normals", "colors")
+    )
+    return _Triangles(vertices, normals, np.concatenate(faces).astype(np.uint32), colors)
 
 
 def body_solids(motion: Motion, frames: Sequence[int], opacity: float = 1.0, role: Role = PLAIN) -> list[Solid]:

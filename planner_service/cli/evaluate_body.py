@@ -236,8 +236,10 @@ def _write_trial(done: Performance, out: Path) -> None:
     write_files(
         out,
         {
-            FILMED[0]: lambda path: path.write_bytes(film_glb(done.home, whole)),
-            FILMED[1]: lambda path: storyboard(done.home, whole, done.keyframes, path, done.trial.caption, targets),
+            FILMED[0]: lambda path: path.write_bytes(film_glb(done.home, whole, done.role)),
+            FILMED[1]: lambda path: storyboard(
+                done.home, whole, done.keyframes, path, done.trial.caption, targets, done.role
+            ),
         },
     )
 

@@ -88,7 +88,7 @@ def _draw(done: PhysicsTrial, out: Path | None) -> None:
     pair = [(f"plan · {title}", done.plan.motion), (f"physics · {title}", done.physics.motion)]
     out.mkdir(parents=True, exist_ok=True)
     name = "".join(letter if letter.isalnum() else "-" for letter in f"{title} {done.row['room']}")
-    imsave(out / f"{name}.png", sheet(pair, done.physics.home))
+    imsave(out / f"{name}.png", sheet(pair, done.physics.home, roles=[done.plan.role, done.physics.role]))
 
 
 def _print(rows: Sequence[dict[str, Any]], as_json: bool) -> None:

@@ -69,6 +69,7 @@ class Methods:
     film_mp4 = Method(requests.film_mp4)
     delete_film = Method(requests.delete_film)
     scene = Method(requests.scene)
+    props = Method(requests.props)
     home = Method(requests.home)
     short_scripts = Method(requests.short_scripts)
     short_script = Method(requests.short_script)

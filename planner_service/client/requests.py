@@ -196,6 +196,11 @@ def scene(story_id: str) -> Call[bytes]:
     return Call("GET", _at("stories", story_id, "scene.glb"), _bytes)
 
 
+def props(story_id: str) -> Call[bytes]:
+    """What is in the hands alone, animated, as GLB; empty where that is nothing."""
+    return Call("GET", _at("stories", story_id, "props.glb"), _bytes)
+
+
 def home(story_id: str) -> Call[Json]:
     """The home whole; `tell` and `act` take it again as `home`."""
     return Call("GET", _at("stories", story_id, "home"), _json)

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from motion_backend.backend_protocol import BodyState
+from motion_backend.body.cast import Role, acted_captions
 from motion_backend.body.joint_limits import worst_joint
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.self_collision import deepest_pair
@@ -133,6 +134,11 @@ class Performance:
     def motion(self) -> Motion:
         """What is judged."""
         return self.motions[-1]
+
+    @property
+    def role(self) -> Role:
+        """Nobody in particular, with what the captions have in the hands."""
+        return Role(captions=acted_captions(self.actions))
 
     @property
     def object_id(self) -> str:

@@ -288,6 +288,7 @@ class Maker:
         actions = story.pipeline.act(story.request, stage, kept_actions(story, origin))
         rows = [serialization.action_to_dict(action) for action in actions]
         summary = {"count": len(actions), "objects": [a.object_id for a in actions]}
+        summary["captions"] = [action.caption for action in actions]
         asleep = role_of(story.request.acted_by, actions, stage.script).asleep
         director = self._director(story.request.backend) if origin else None
         taken = reused_segments(story, origin, rows, director) if director else []

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from motion_backend.body.cast import Role, acted_captions
 from motion_backend.director import Director, shares
 from motion_backend.motion import Skill
 from planner_service.evaluation.trials import Trial, act_trial, places_for, setting
@@ -30,11 +31,12 @@ def draw_backends(directors: Sequence[tuple[str, Director]], folder: Path, seed:
         trial = _drawn(skill, seed)
         rows = []
         for name, director in directors:
-            motion = act_trial(trial, director)[2][-1]
+            _, actions, motions = act_trial(trial, director)
+            motion, role = motions[-1], Role(captions=acted_captions(actions))
             own = ", ".join(f"{who} {share:.0%}" for who, share in shares(motion).items())
             rows.append((f"{name} ({own}) · {trial.caption} · {trial.room}", motion))
         path = folder / f"{skill.value}.png"
-        save_png(sheet(rows, setting(trial.room).home), path)
+        save_png(sheet(rows, setting(trial.room).home, roles=[role] * len(rows)), path)
         yield path
 
 

@@ -22,14 +22,14 @@ TRIED: Final = 8
 
 def caption_sheet(caption: str, skill: Skill | None, room: str | None, seed: int) -> Image:
     """One caption, a known one or, with its skill, any other. RequestError where no room has what it needs."""
-    return _page([_trial(_skill_of(caption) if skill is None else skill, caption, room, seed)])
+    return _page([trial_of(_skill_of(caption) if skill is None else skill, caption, room, seed)])
 
 
 def vocabulary_sheets(skills: Sequence[Skill], room: str | None, seed: int) -> Iterator[tuple[str, Image]]:
     """Pages of all known captions of these skills, each with a name for its file; one room a page."""
     known = captions()
     for skill in skills:
-        trials = [_trial(skill, caption, room, seed) for caption in known[skill.value]]
+        trials = [trial_of(skill, caption, room, seed) for caption in known[skill.value]]
         for where, some in groupby(sorted(trials, key=lambda trial: trial.room), key=lambda trial: trial.room):
             of_room = list(some)
             for start in range(0, len(of_room), ROWS):
@@ -38,7 +38,7 @@ def vocabulary_sheets(skills: Sequence[Skill], room: str | None, seed: int) -> I
 
 def _page(trials: Sequence[Trial]) -> Image:
     done = [perform(trial) for trial in trials]
-    return sheet([(_title(one), one.motion) for one in done], done[0].home)
+    return sheet([(_title(one), one.motion) for one in done], done[0].home, roles=[one.role for one in done])
 
 
 def _title(done: Performance) -> str:
@@ -47,7 +47,7 @@ def _title(done: Performance) -> str:
     return f"{trial.skill}: {trial.caption}  ({done.object_id}, {trial.room}, seed {trial.seed}{off})"
 
 
-def _trial(skill: Skill, caption: str, room: str | None, seed: int) -> Trial:
+def trial_of(skill: Skill, caption: str, room: str | None, seed: int) -> Trial:
     """The trial in the room, or in one of the library that has what it needs: furniture rather than the floor."""
     rooms = [layout.id for layout in built_in_index().layouts]
     if room is not None and room not in rooms:

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Posture, Skill
+from motion_backend.props import held_in
 from planner_service.scripts.caption_actions import MAX_CAPTION_LENGTH, caption_of
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import RISES
@@ -25,8 +26,8 @@ _LEFT_OUT: Final = {
     "take": "the hand is laid where it would lie; nothing is drawn in it",
     "put": "the hand is laid where it would lie; nothing is drawn in it",
     "operate": "the hand is laid on it; nothing moves",
-    "call": "a hand is held to the ear; no phone is drawn in it",
-    "use": "the pose is held; nothing is drawn in the hands",
+    "call": "a phone is held to the ear; nobody is heard",
+    "use": f"the pose is held; {_UNDRAWN}",
 }
 """What the acting of a kind of order leaves out."""
 
@@ -239,6 +240,8 @@ class _Actor:
         caption = caption_of(done, pose)
         if len(caption) > MAX_CAPTION_LENGTH:
             return [index], "the caption of this rest names no more than is done before it"
+        if held_in(self.keyframes[index].skill, pose) is not None:
+            why = why.removesuffix(f"; {_UNDRAWN}").replace(f"; {_UNDRAWN};", ";")
         self.done[index] = done
         self.keyframes[index] = self.keyframes[index].model_copy(update={"caption": caption})
         return [index], why

@@ -115,7 +115,7 @@ def test_a_cursor_that_we_did_not_give_is_refused(client: httpx.Client, cursor: 
     assert refused(client.get("/v1/stories", params={"cursor": cursor}), "?cursor")
 
 
-@pytest.mark.parametrize("path", ["", "/events", "/home", "/motion", "/film.glb", "/scene.glb"])
+@pytest.mark.parametrize("path", ["", "/events", "/home", "/motion", "/film.glb", "/scene.glb", "/props.glb"])
 @pytest.mark.parametrize("story_id", ["nobody", "01a1fdcc-a358-79d2-b231-f62da6204b41", "..%2F..%2Fetc"])
 def test_what_is_not_there_is_a_404(client: httpx.Client, story_id: str, path: str) -> None:
     answer = client.get(f"/v1/stories/{story_id}{path}")

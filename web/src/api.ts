@@ -301,6 +301,7 @@ export function motionUrl(id: string, format: string, from?: number, to?: number
 }
 
 export const sceneUrl = (id: string): string => `${story(id)}/scene.glb`;
+export const propsUrl = (id: string): string => `${story(id)}/props.glb`;
 export const filmUrl = (id: string): string => `${story(id)}/film.glb`;
 export const storyUrl = (id: string): string => story(id);
 export const eventsUrl = (id: string): string => `${story(id)}/events`;

@@ -1,6 +1,6 @@
 /** The film: stage, curtain, subtitle, plan and controls, kept in time by one clock. */
 
-import { getGlb, getHome, motionUrl, sceneUrl, type Keyframe, type Point2, type Skill, type Story } from "./api";
+import { getGlb, getHome, motionUrl, propsUrl, sceneUrl, type Keyframe, type Point2, type Skill, type Story } from "./api";
 import { color, isDark, isStill, onAppearance } from "./appearance";
 import type { CameraMode } from "./camera";
 import { Controls } from "./controls";
@@ -43,6 +43,8 @@ export class Film {
   #story: Story | null = null;
   #mode: CameraMode = isStill() ? "orbit" : "follow";
   #asked = { home: false, body: false };
+  /** For how many frames the props on the stage are, and whether more are on their way. */
+  #props = { frames: 0, coming: false };
   #opened = false;
   #last = 0;
   #drawn = -1;
@@ -87,6 +89,8 @@ export class Film {
     this.#story = this.keyframe = null;
     this.#opened = false;
     this.#drawn = -1;
+    this.#props = { frames: 0, coming: false };
+    void this.#stage?.setProps(new ArrayBuffer(0));
     this.#settled.clear();
     this.notice();
     this.#wait.hidden = false;
@@ -117,6 +121,7 @@ export class Film {
     if (story.motion.frames > 0) this.reel.want(story.motion.frames);
     if (story.home && story.stage !== "plan" && story.stage !== "furnish") void this.#fetchHome();
     if (story.motion.frames > 0) void this.#fetchBody();
+    void this.#fetchProps();
     this.#feed();
   }
 
@@ -227,6 +232,25 @@ export class Film {
     }
   }
 
+  /** What is in the hands in the frames there are by now; fetched again as they become more. */
+  async #fetchProps(): Promise<void> {
+    const [id, props, frames] = [this.#id, this.#props, this.#story?.motion.frames ?? 0];
+    if (props.coming || frames <= props.frames) return;
+    props.coming = true;
+    try {
+      const glb = await getGlb(propsUrl(id));
+      const stage = await this.#raised;
+      if (props === this.#props) await stage?.setProps(glb);
+      props.frames = frames;
+    } catch (error) {
+      console.warn("What is in the hands cannot be shown yet:", error);
+      return;
+    } finally {
+      props.coming = false;
+    }
+    if (props === this.#props) void this.#fetchProps();
+  }
+
   /** Tell the player how far the film goes by now. */
   #feed(): void {
     const { track } = this.reel;
@@ -242,7 +266,7 @@ export class Film {
     if (this.#from !== null) this.player.seek((this.#startOf(this.#from) ?? 0) / FPS);
     this.#from = null;
     this.reel.track.sample(this.player.time, this.#pose);
-    this.#stage?.pose(this.#pose);
+    this.#stage?.pose(this.#pose, this.player.time);
     this.#tick();
     this.#stage?.setMode(this.#mode);
     this.#arch.classList.remove("closed");
@@ -289,7 +313,7 @@ export class Film {
     if (frame === this.#drawn && keyframe === this.keyframe) return;
     this.#drawn = frame;
     track.sample(this.player.time, this.#pose);
-    this.#stage?.pose(this.#pose);
+    this.#stage?.pose(this.#pose, this.player.time);
     this.#map.tick(this.#pose, track, frame);
     const seen = keyframe !== null && frame >= this.#settledAt(keyframe, keyframes);
     if (seen !== this.#seen || keyframe !== this.keyframe) this.#showCard(keyframe === null ? undefined : keyframes[keyframe], seen);

@@ -12,6 +12,7 @@ import { groundDisc, shade, subfloors } from "./ground";
 import { Lighting } from "./lighting";
 import { heading, JOINT_NAMES, type Point3, type Pose } from "./pose";
 import { isMesh } from "./pieces";
+import { Props } from "./props";
 import { giveBack, lend, warmUp } from "./rendering";
 import { boxesOf, Lookout } from "./sight";
 import { wallSides } from "./walls";
@@ -53,11 +54,13 @@ export class Stage {
   #joints: Object3D[] = [];
   #face: Face | null = null;
   #bodyRoot: Object3D | null = null;
+  #props: Props | null = null;
   #home: Object3D | null = null;
   #cutaway: Cutaway | null = null;
   #fading: Fading | null = null;
   readonly #stale = (): void => void (this.dirty = true);
   #heading = 0;
+  #time = 0;
   #slow = 0;
   #sharpness = 1;
   /** Seconds without a new picture, and whether the last one has all its points though others are drawn with fewer. */
@@ -117,6 +120,16 @@ export class Stage {
     this.dirty = true;
   }
 
+  /** Put what is in the hands on stage in place of what was; nothing where the glb is empty. */
+  async setProps(glb: ArrayBuffer): Promise<void> {
+    const loaded = glb.byteLength ? await new GLTFLoader().parseAsync(glb, "") : null;
+    this.#props?.dispose();
+    this.#props = loaded && new Props(loaded.scene, loaded.animations[0]);
+    if (loaded) this.#scene.add(loaded.scene);
+    this.#props?.seek(this.#time);
+    this.dirty = true;
+  }
+
   get hasHome(): boolean {
     return this.#home !== null;
   }
@@ -125,7 +138,10 @@ export class Stage {
     return this.#bodyRoot !== null;
   }
 
-  pose(pose: Pose): void {
+  /** Show a moment: the body's pose at a time in seconds. */
+  pose(pose: Pose, time: number): void {
+    this.#time = time;
+    this.#props?.seek(time);
     this.#body.fromArray(pose.root);
     this.#heading = heading(pose);
     this.#joints[0]?.position.fromArray(pose.root);

@@ -13,7 +13,7 @@ from typing import Annotated, Final, Literal
 from fastapi import APIRouter, Depends, Header, Path, Query, Request, Response
 
 from motion_backend.formats import FORMATS, encode
-from motion_backend.formats.glb_film import body_glb, scene_glb
+from motion_backend.formats.glb_film import body_glb, props_glb, scene_glb
 from motion_backend.formats.usd_film import UsdUnavailableError, check_usd, film_usd
 from motion_backend.motion import Character
 from planner_service.api.dependencies import PartsDep
@@ -197,6 +197,20 @@ def scene(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
     """The home alone."""
     etag = _made(record, "home")
     return unchanging(request, f"{etag}-scene", lambda: scene_glb(home_from_dict(_home_row(stories, record))), GLB)
+
+
+@stories_router.get("/{story_id}/props.glb", response_class=Response, responses={200: {"content": {GLB: {}}}, 204: {}})
+def props(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
+    """What is in the hands, animated, in the frames that are ready; 204 where that is nothing."""
+    footage = Footage(record)
+    if not footage.ready:
+        raise NotReady("not ready yet: nothing has moved; follow links.events")
+    data = props_glb(footage.motion(stories, 0, footage.ready), role_in(record))
+    if not data:
+        return Response(status_code=204, headers={"Cache-Control": "no-store"})
+    if footage.complete:
+        return unchanging(request, f"{footage.etag(0, footage.ready)}-props", lambda: data, GLB)
+    return Response(data, headers={"Cache-Control": "no-store"}, media_type=GLB)
 
 
 @stories_router.get("/{story_id}/film.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})

@@ -358,6 +358,7 @@ class Links(BaseModel):
     usd: str = Field(description="The same as USD, where usd-core is installed.")
     mp4: str = Field(description="The story filmed, for any player; POST to `self`/film makes it.")
     scene: str
+    props: str = Field(description="What is in the hands, for a player that has its own clock.")
     home: str
 
 

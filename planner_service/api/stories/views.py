@@ -146,14 +146,17 @@ def role_in(record: Record) -> Role:
             made |= artifact.summary
     emotions = {row["index"]: Emotion(row["mood"]) for row in made.get("keyframes", [])}
     look = Look.of(Character(**made.get("character", record.character)))
-    return Role(look, emotions, frozenset(made.get("asleep", ())))
+    said = made.get("captions") or [row["caption"] for row in made.get("keyframes", ())]
+    rows = zip(made.get("keyframes", ()), said, strict=False)
+    captions = {row["index"]: (Skill(row["skill"]), caption) for row, caption in rows}
+    return Role(look, emotions, frozenset(made.get("asleep", ())), captions)
 
 
 def _links(story_id: str) -> dict[str, str]:
     here = f"/v1/stories/{story_id}"
     parts = {name: f"{here}/{name}" for name in ("events", "cancel", "takes", "motion", "home")}
     files = {"film": f"{here}/film.glb", "usd": f"{here}/film.usd", "mp4": f"{here}/film.mp4"}
-    return {"self": here, **parts, **files, "scene": f"{here}/scene.glb"}
+    return {"self": here, **parts, **files, "scene": f"{here}/scene.glb", "props": f"{here}/props.glb"}
 
 
 def events_of(record: Record) -> Iterator[StoryEvent]:

@@ -5,19 +5,22 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from sample_motions import tumbling
+from sample_motions import standing_still, tumbling
 
 from motion_backend import rotations
 from motion_backend.body.cast import Role
-from motion_backend.formats.glb_film import body_glb, film_glb, meshes_to_glb, scene_glb
+from motion_backend.formats.glb_film import body_glb, film_glb, meshes_to_glb, props_glb, scene_glb
+from motion_backend.formats.glb_props import lanes
 from motion_backend.formats.gltf_document import read_glb
-from motion_backend.motion import Emotion
+from motion_backend.motion import Emotion, Motion, Skill
+from motion_backend.props import PropTrack, prop_tracks
+from motion_backend.skeleton import INDEX
 from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout, Placed
 
@@ -34,6 +37,10 @@ class Slab:
     faces: NDArray[np.int32]
     color: tuple[float, float, float, float] = (0.5, 0.4, 0.3, 1.0)
     roughness: float = 0.8
+
+
+HOME = home_from_layouts([Layout("room", "bedroom", ((0, 0), (0, 4), (4, 4), (4, 0)))], 0)
+NODE = "prop_phone_0"
 
 
 def slab(name: str, height: float, alpha: float = 1.0) -> Slab:
@@ -60,6 +67,8 @@ def played(document, binary: bytes, frame: int):
     animation = document["animations"][0]
     for channel in animation["channels"]:
         node, path = channel["target"]["node"], channel["target"]["path"]
+        if node not in document["skins"][0]["joints"]:
+            continue
         value = accessor(document, binary, animation["samplers"][channel["sampler"]]["output"])[frame]
         shift, turn = local[node]
         local[node] = (value, turn) if path == "translation" else (shift, value)
@@ -144,17 +153,89 @@ def test_a_minute_of_body_is_small():
     assert len(body_glb(tumbling(60 * 30))) < 800_000
 
 
+def holding(frames: int = 60) -> tuple[Motion, Role]:
+    """Somebody whose right hand goes to the ear and down again, said to be on the phone all the time."""
+    motion = standing_still(frames)
+    turns = motion.local_rotations.copy()
+    share = np.clip(1.5 * np.sin(np.pi * np.linspace(0, 1, frames)), 0, 1)[:, None]
+    hang, bent = np.array([0.0, 0.0, 1.35]), np.array([0.0, 2.3, 0.0])
+    turns[:, INDEX["right_shoulder"]] = rotations.rotvec_to_quat((1 - 0.75 * share) * hang)
+    turns[:, INDEX["right_elbow"]] = rotations.rotvec_to_quat(share * bent)
+    said = {0: (Skill.LOCO, "walk while talking on the phone with the right hand")}
+    return replace(motion, local_rotations=turns.astype(np.float32)), Role(captions=said)
+
+
+def animated(document, binary: bytes, name: str, path: str):
+    """The times and values of what a node does."""
+    animation, nodes = document["animations"][0], document["nodes"]
+    for channel in animation["channels"]:
+        if nodes[channel["target"]["node"]]["name"] == name and channel["target"]["path"] == path:
+            sampler = animation["samplers"][channel["sampler"]]
+            return accessor(document, binary, sampler["input"])[:, 0], accessor(document, binary, sampler["output"])
+    raise AssertionError(f"{name} has no {path}")
+
+
+def test_a_prop_is_a_node_where_its_track_has_it_and_of_no_size_elsewhere():
+    motion, role = holding()
+    (track,) = prop_tracks(motion, role)
+    assert 0 < track.start < track.stop < len(motion)
+    for data in (film_glb(HOME, motion, role), props_glb(motion, role)):
+        document, binary = read_glb(data)
+        frames = np.arange(len(motion))
+        there = (frames >= track.start) & (frames < track.stop)
+        keyed, sizes = animated(document, binary, NODE, "scale")
+        assert (sizes == sizes[:, :1]).all()
+        scale = np.interp(frames / motion.fps, keyed, sizes[:, 0])
+        np.testing.assert_allclose(scale[there], track.sizes, atol=5e-3)
+        np.testing.assert_allclose(scale[~there], 0.0, atol=1e-6)
+        times, places = animated(document, binary, NODE, "translation")
+        inside = np.isin(np.rint(times * motion.fps).astype(int), frames[there])
+        np.testing.assert_allclose(places[inside], track.positions, atol=1e-5)
+        _, turns = animated(document, binary, NODE, "rotation")
+        np.testing.assert_allclose(np.abs(np.sum(turns[inside] * track.turns, axis=1)), 1.0, atol=1e-4)
+
+
+def test_props_change_nothing_of_the_body_and_a_body_alone_has_none():
+    motion, role = holding()
+    bare, whole = (read_glb(film_glb(HOME, motion, one)) for one in (Role(), role))
+    for frame in (0, 30):
+        for name, place in played(*bare, frame).items():
+            np.testing.assert_array_equal(played(*whole, frame)[name], place)
+    names = [[node["name"] for node in document["nodes"]] for document, _ in (bare, whole)]
+    assert names[1] == [*names[0], NODE]
+    assert body_glb(motion, role) == body_glb(motion)
+    assert props_glb(motion, Role()) == b""
+
+
+def test_what_comes_again_is_the_same_node_and_two_at_once_are_two():
+    def track(prop: str, start: int, frames: int) -> PropTrack:
+        turns = np.tile(rotations.IDENTITY, (frames, 1))
+        return PropTrack(prop, start, np.zeros((frames, 3)), turns, np.ones(frames))
+
+    found = lanes([track("cup", 50, 10), track("cup", 0, 20), track("phone", 5, 9), track("cup", 10, 20)])
+    assert [[(one.prop, one.start) for one in lane] for lane in found] == [
+        [("cup", 0), ("cup", 50)], [("phone", 5)], [("cup", 10)],
+    ]  # fmt: skip
+
+
+def test_the_same_film_with_props_has_the_same_bytes():
+    motion, role = holding()
+    assert film_glb(HOME, motion, role) == film_glb(HOME, motion, role)
+    assert props_glb(motion, role) == props_glb(motion, role)
+
+
 @pytest.mark.service
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
 @pytest.mark.skipif(not VALIDATOR.is_dir(), reason="the glTF validator is not installed: npm ci in tests/gltf")
 def test_the_khronos_validator_has_nothing_to_say(tmp_path):
     (tmp_path / "body.glb").write_bytes(body_glb(tumbling(30)))
+    (tmp_path / "held.glb").write_bytes(props_glb(*holding()))
     (tmp_path / "scene.glb").write_bytes(meshes_to_glb([slab("floor", 0), slab("sofa", 0.4), slab("window", 1, 0.3)]))
     paths = sorted(str(p) for p in tmp_path.glob("*.glb"))
     done = subprocess.run(["node", str(RUNNER), *paths], capture_output=True, text=True, check=True, timeout=60)
     reports = [json.loads(line) for line in done.stdout.splitlines()]
-    assert len(reports) == 2
-    assert [report["issues"]["messages"] for report in reports] == [[], []]
+    assert len(reports) == 3
+    assert [report["issues"]["messages"] for report in reports] == [[], [], []]
 
 
 def test_other_bytes_are_not_taken_for_a_glb():

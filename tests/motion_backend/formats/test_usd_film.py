@@ -16,7 +16,9 @@ from motion_backend.body.face_track import face_track
 from motion_backend.body.skinning import skin
 from motion_backend.formats import usd_film
 from motion_backend.formats.usd_film import UsdUnavailableError, film_usd, joint_paths
-from motion_backend.motion import Emotion, Motion
+from motion_backend.motion import Emotion, Motion, Skill
+from motion_backend.props import PropTrack
+from motion_backend.rotations import IDENTITY
 
 pxr = pytest.importorskip("pxr")
 FRAMES = (0, 17, 59)
@@ -92,6 +94,27 @@ def test_the_home_is_there_with_all_its_groups_and_every_mesh_has_a_look(stage: 
     assert all(UsdShade.MaterialBindingAPI(one).ComputeBoundMaterial()[0] for one in meshes)
     bound = UsdGeom.BBoxCache(0, ["default"]).ComputeWorldBound(stage.GetPrimAtPath("/Film/Home"))
     assert abs(bound.ComputeAlignedRange().GetMin()[1]) < 0.05, "it stands on the floor"
+
+
+def test_what_is_in_the_hands_is_where_its_track_has_it(tmp_path: Path) -> None:
+    from pxr import Usd, UsdGeom
+
+    motion = acted()
+    role = Role(captions={int(key): (Skill.SITDOWN, "crossing arms") for key in np.unique(motion.actions)})
+    path = tmp_path / "none.usd"
+    path.write_bytes(film_usd(None, motion, role))
+    assert not Usd.Stage.Open(str(path)).GetPrimAtPath("/Film/Props")
+    track = PropTrack("cup", 5, np.arange(60.0).reshape(20, 3), np.tile(IDENTITY, (20, 1)), np.linspace(0.05, 1, 20))
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(usd_film, "prop_tracks", lambda *_: (track,))
+        (tmp_path / "cup.usd").write_bytes(film_usd(None, motion, role))
+    opened = Usd.Stage.Open(str(tmp_path / "cup.usd"))
+    cup = UsdGeom.Xformable(opened.GetPrimAtPath("/Film/Props/cup_0"))
+    for frame, size in ((0, 0.0), (5, 0.05), (24, 1.0), (40, 0.0)):
+        matrix = np.array(cup.GetLocalTransformation(Usd.TimeCode(frame)))
+        np.testing.assert_allclose(matrix[:3, :3], size * np.eye(3), atol=1e-5)
+        if size:
+            np.testing.assert_allclose(matrix[3, :3], track.positions[frame - 5], atol=1e-5)
 
 
 def test_equal_films_give_equal_bytes() -> None:

@@ -14,6 +14,7 @@ from service_app import app_on, calling, check_problem
 from sqlalchemy import update
 
 from motion_backend.formats import usd_film
+from motion_backend.formats.gltf_document import read_glb
 from planner_service.jobs import film_stages
 from planner_service.jobs.film_stages import Filmer
 from planner_service.jobs.story_stages import Maker
@@ -57,9 +58,9 @@ def ended(app: FastAPI, story_id: str, status: str) -> None:
         connection.execute(update(workflow_status).where(mine).values(status=status))
 
 
-async def made(app: FastAPI, client: Any) -> dict[str, Any]:
+async def made(app: FastAPI, client: Any, motion: dict[str, Any] = MOTION) -> dict[str, Any]:
     """A motion that was acted out."""
-    story = (await client.post("/v1/motions", json=MOTION)).json()
+    story = (await client.post("/v1/motions", json=motion)).json()
     desk = Maker(Stories(app.state.parts.engine), Pipeline(app.state.parts.shelves), "one")
     desk.plan(story["id"])
     desk.furnish(story["id"])
@@ -124,6 +125,25 @@ async def test_a_film_is_had_as_usd_once_the_body_has_moved(app: FastAPI, tmp_pa
     assert stage.GetEndTimeCode() > 60
     assert stage.GetPrimAtPath("/Film/Body/Skeleton/Motion")
     assert stage.GetPrimAtPath("/Film/Home/furniture")
+
+
+async def test_what_is_in_the_hands_is_had_as_soon_as_the_body_has_moved(app: FastAPI) -> None:
+    drinks = {"skill": "sitdown", "caption": "drinking from a cup in the right hand", "furniture": "sofa"}
+    async with calling(app) as client:
+        fresh = (await client.post("/v1/motions", json=MOTION)).json()
+        assert check_problem(await client.get(fresh["links"]["props"]), 404)["type"] == "urn:sims:problem:not-ready"
+        empty = await client.get((await made(app, client))["links"]["props"])
+        assert (empty.status_code, empty.content) == (204, b"")
+        story = await made(app, client, MOTION | {"keyframes": [drinks]})
+        file = await client.get(story["links"]["props"])
+        assert (file.status_code, file.headers["content-type"]) == (200, "model/gltf-binary")
+        again = await client.get(story["links"]["props"], headers={"If-None-Match": file.headers["etag"]})
+        assert again.status_code == 304
+    document, _ = read_glb(file.content)
+    assert [node["name"] for node in document["nodes"]] == ["prop_cup_0"]
+    assert {channel["target"]["path"] for channel in document["animations"][0]["channels"]} == {
+        "translation", "rotation", "scale",
+    }  # fmt: skip
 
 
 async def test_without_the_library_usd_is_not_provided_and_the_remedy_is_told(

@@ -1,0 +1,7 @@
+"""What is seen in the hands: which caption holds what, what it looks like, and where it is in every frame"""
+
+from motion_backend.props.prop_shapes import PropShape, prop_shape
+from motion_backend.props.prop_table import Held, held_in
+from motion_backend.props.prop_tracks import PropTrack, prop_tracks
+
+__all__ = ["Held", "PropShape", "PropTrack", "held_in", "prop_shape", "prop_tracks"]
