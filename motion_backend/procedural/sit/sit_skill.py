@@ -145,6 +145,8 @@ HOLLOW = 0.035
 """From the hollow of a knee that is bent over an edge to the middle of the knee (metres)."""
 MIN_EDGE = 0.07
 """Thighs rest on so much of a seat at least (metres)."""
+FARTHEST_BACK = 45.0
+"""Who leans back on stretched legs does so by as much at most (degrees)."""
 AT_EASE = 0.42
 """Distance of a table's edge from the pelvis to which nobody draws nearer (metres)."""
 ABOUT = 1.4
@@ -185,7 +187,11 @@ def _slouch(spot: Spot, style: Seated) -> float:
 def _perched(spot: Spot, style: Seated, obstacles: Obstacles) -> Spot | None:
     """The same seat sat on so far to the front that legs are straight on the floor; None where they have no room."""
     seat = Seat.of(spot)
-    ahead = _slid(spot, max(perch(seat, 1.0), _slouch(spot, style)))
+    forward = max(perch(seat, 1.0), _slouch(spot, style))
+    if style.recline >= LEANS_BACK and np.isfinite(spot.back):
+        # Still within reach of the backrest: legs are less straight then.
+        forward = min(forward, back_for(FARTHEST_BACK) - spot.back)
+    ahead = _slid(spot, forward)
     placed = Seat.of(ahead)
     rooms = zip(is_to_be_straight(style.legs), leg_room(obstacles, placed, 1.0), strict=True)
     enough = all(room.ahead >= straight_reach(placed, 1.0) for straight, room in rooms if straight)
