@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from zlib import crc32
 
 import numpy as np
 
@@ -240,7 +241,9 @@ def stay(body: Body, part: Part) -> None:
     does_it = style.stays > 0 and bool(style.doing)
     if action.stands and not does_it:
         said = style.bearing.waits
-        waits = said if said != bearing.waits else idle_table().waiting(said, body.rng)
+        # Who does this does it in one way, and another thing or another person otherwise.
+        habit = np.random.default_rng((body.seed, crc32(action.caption.encode())))
+        waits = said if said != bearing.waits else idle_table().waiting(said, habit)
         _stand_about(body, part.hold, replace(bearing, waits=waits))
         return
     if not does_it and (action.skill is not Skill.LOCO or action.goal is not None):
