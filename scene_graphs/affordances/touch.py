@@ -9,7 +9,7 @@ from scene_graphs.affordances.spot import FORWARD, Spot, ahead, dot, extent, pla
 from scene_graphs.furniture_shapes import Part
 from scene_graphs.layout import Placed, Point2, Point3, wrap
 
-TOUCH_HEIGHTS = {"medium": (0.68, 1.0, 1.15), "low": (0.30, 0.45, 0.55), "high": (1.38, 1.80, 1.80)}
+TOUCH_HEIGHTS = {"medium": (0.68, 1.0, 1.15), "low": (0.30, 0.45, 0.55), "high": (1.38, 1.76, 1.76)}
 """Least, wanted and greatest height above the floor of a touched point."""
 AWAY = {"medium": (0.38, 0.45), "low": (0.50,), "high": (0.45,)}
 """How far from it one stands: right up to what is at hand if its foot allows that, with room to squat or to stretch
