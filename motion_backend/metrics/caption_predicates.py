@@ -382,6 +382,7 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "ankles_across": lambda body: _in_pelvis(body, "ankle")[:, 0],
     "ankles_ahead": lambda body: np.abs(_in_pelvis(body, "ankle")[:, 2]),
     "neck_over_pelvis": lambda body: _high(_trunk(body)),
+    "elbow_over_pelvis": lambda body: _high(_both(body, "elbow")) - _high(body.positions[:, None, INDEX["pelvis"]]),
     "elbow_to_knee": lambda body: np.linalg.norm(_both(body, "elbow") - _both(body, "knee"), axis=-1),
     # Metres and metres a second.
     "knee_height": lambda body: _high(_both(body, "knee")),

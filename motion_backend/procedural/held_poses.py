@@ -84,7 +84,15 @@ class Idle:
     sway_m: float
     sway_down_share: float
     """Of the sway: the weight on one leg."""
+    waits_usual_share: float
+    """Of the times that one stands about, arms are as the mood has them; else as one of `waits`."""
+    waits: tuple[tuple[str, str], ...]
     shift: Shift
+
+    def waiting(self, usual: tuple[str, str], rng: np.random.Generator) -> tuple[str, str]:
+        """How arms are held by who stands about this time: names of arm poses."""
+        others = [pair for pair in self.waits if pair != usual]
+        return usual if rng.random() < self.waits_usual_share else others[rng.integers(len(others))]
 
 
 def idle_table() -> Idle:

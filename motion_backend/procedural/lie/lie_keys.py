@@ -48,6 +48,8 @@ class SideLegs:
     name: str
     below: Fold
     above: Fold
+    above_ankle_up_m: float = 0.135
+    """The ankle above, over what the body lies on."""
 
 
 @table

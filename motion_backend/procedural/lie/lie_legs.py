@@ -36,9 +36,9 @@ STRETCHED: Final = -0.75
 """An ankle that is farther down the bed is that of a stretched leg (metres at 1.70 m)."""
 MIN_KNEE, DRAWN_UP = 6.0, 80.0
 """Knees of who lies on a side are bent at least so far, and hips so far where knees are drawn up (degrees)."""
-BELOW, ABOVE = (0.062, 0.045), (0.17, 0.15)
-"""How high knee and ankle of the leg below, and of the one above, are over what a body lies on a side on (metres at
-1.70 m)."""
+BELOW, ABOVE_KNEE = (0.062, 0.045), 0.17
+"""How high knee and ankle of the leg below, and the knee of the one above, are over what a body lies on a side on
+(metres at 1.70 m)."""
 BACK: Final[dict[str, tuple[str, str]]] = {
     "straight": ("flat", "flat"),
     "loose": ("loose", "loose"),
@@ -91,7 +91,7 @@ def on_a_side(pose: Pose, legs: SideLegs, side: str, bed: SideBed, skeleton: Ske
     pose = _placed(pose, (folded[0][0], folded[1][0]), skeleton)
     ankles, knees = pose.ankles.copy(), pose.knees.copy()
     for index, (_, knee) in enumerate(folded):
-        high = BELOW if folded[index] is below else ABOVE
+        high = BELOW if folded[index] is below else (ABOVE_KNEE, legs.above_ankle_up_m)
         ankles[index], knees[index] = _let_down(pose, knee, index, bed.surface, high, skeleton)
     return replace(pose, ankles=ankles, knees=knees)
 

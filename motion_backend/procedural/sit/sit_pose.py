@@ -28,9 +28,9 @@ TO_TABLE = np.radians(np.arange(2.0, 48.0, 1.0))
 """Leans forward that are tried until the elbows of hands on a table are bent enough."""
 EASY_TABLE = 0.70
 """A table's edge is no farther from the pelvis for hands that do something on it (metres at 1.70 m)."""
-EASY_ELBOW = np.radians(117.0)
+EASY_ELBOW = np.radians(112.0)
 """How far an elbow is open at most whose hand is on a table."""
-LEANS = np.radians(np.arange(8.0, 62.0, 1.0))
+LEANS = np.radians(np.arange(8.0, 76.0, 1.0))
 """Leans of the trunk that are tried until the elbows lie."""
 BEHIND_PELVIS = 0.12
 """From the pelvis joint to the skin of the back (metres)."""
@@ -251,12 +251,16 @@ def _head(style: Seated) -> Array:
 def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     """Backward lean of the trunk, as far as there is a back to lean against, or arms (radians)."""
     seat = place.seat
-    limit = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - BEHIND_PELVIS) / BACKREST, 0.0, MAX_SINE))
     propped = {"behind", "propped", "beside"} & set(style.arms)
-    free = trunk.max_propped_deg if propped else trunk.max_free_deg
-    most = np.radians(free if np.isinf(seat.back) else trunk.max_back_deg)
     own = style.own.recline if style.recline and not propped else style.own.upright_recline
-    return float(min(np.radians(style.recline + own), float(limit) + GIVES, most))
+    wanted, most = np.radians(style.recline + own), np.radians(trunk.max_back_deg)
+    met = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - BEHIND_PELVIS) / BACKREST, 0.0, MAX_SINE))
+    if not propped and style.recline >= LEANS_BACK and met < most:
+        # Who leans back lets the backrest bear it.
+        wanted = max(wanted, met)
+    borne = met < most if style.recline >= LEANS_BACK else np.isfinite(seat.back)
+    free = np.radians(trunk.max_propped_deg if propped else trunk.max_free_deg)
+    return float(min(wanted, met + GIVES, most if borne else free))
 
 
 def _leaning(pose: Pose, seat: Seat, back: Array, trunk: Trunk) -> Pose:

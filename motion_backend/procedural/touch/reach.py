@@ -285,8 +285,11 @@ def _misses(tries: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, row: Reac
     arm = ARM_LENGTH * skeleton.scale
     miss = np.zeros(len(tries))
     for index, wrist, _ in laid.hands:
-        gap = np.linalg.norm(wrist - shoulders(tries, skeleton)[:, index], axis=1)
-        miss = miss + np.maximum(gap - row.arm_max_share * arm, 0.0) + np.maximum(row.arm_min_share * arm - gap, 0.0)
+        way = wrist - shoulders(tries, skeleton)[:, index]
+        gap = np.linalg.norm(way, axis=1)
+        # A shoulder comes up with its arm.
+        longest = (row.arm_max_share + row.arm_raised_share * np.clip(way[:, 1] / arm, 0.0, 1.0) ** 2) * arm
+        miss = miss + np.maximum(gap - longest, 0.0) + np.maximum(row.arm_min_share * arm - gap, 0.0)
     # The head stays clear of what is touched: before a front one bends the knees instead.
     chest, place = chest_frame(tries, skeleton)
     head = place + rotations.rotate(chest, np.array([0.0, row.head_up_m, row.head_ahead_m]) * skeleton.scale)
@@ -303,13 +306,14 @@ def _effort(miss: Array, bent: tuple[Array, Array], laid: Laid, skeleton: Skelet
     (lean, crouch), height = bent, float(laid.wrist[1])
     higher = float(np.clip((height / skeleton.scale - row.squat_below_m) / row.squat_within_m, 0.0, 1.0))
     squat = row.crouch_per_m + row.crouch_more_per_m * higher
-    if is_top(laid.normal) and row.top_above_m < height / skeleton.scale < row.top_below_m:
-        squat = max(squat, row.crouch_top_per_m)
+    top = is_top(laid.normal) and row.top_above_m < height / skeleton.scale < row.top_below_m
+    squat = max(squat, row.crouch_top_per_m) if top else squat
     effort = row.miss_per_m * miss + row.lean_per_rad * lean + row.lean_per_rad2 * lean**2
     # One rises on tiptoes only for what is out of reach otherwise, or overhead.
     above = float(np.clip((height / skeleton.scale - row.stretch_from_m) / row.stretch_within_m, 0.0, 1.0))
     rise = np.abs(crouch + above * row.stretch_m * skeleton.scale)
     tiptoe = np.where(crouch < -LIFTED, (1 - above) * row.tiptoe + row.tiptoe_per_m * rise, squat * rise)
+    tiptoe = tiptoe + top * row.crouch_top_per_m2 * np.maximum(crouch, 0.0) ** 2
     return np.asarray(effort + tiptoe)
 
 

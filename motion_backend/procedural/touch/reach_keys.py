@@ -159,7 +159,9 @@ class ReachSearch:
     turn_within_rad: float
     """from this lean on altogether."""
     arm_max_share: float
-    """Of its length, that an arm is stretched to."""
+    """Of its length, that an arm is stretched to,"""
+    arm_raised_share: float
+    """and so much more straight up."""
     arm_min_share: float
     head_up_m: float
     """The middle of the head from the chest."""
@@ -193,7 +195,9 @@ class ReachEffort:
     squat_within_m: float
     """by this."""
     crouch_top_per_m: float
-    """The least to a top above `top_above_m`"""
+    """The least to a top above `top_above_m`,"""
+    crouch_top_per_m2: float
+    """the more the deeper: back and knees share it,"""
     top_above_m: float
     top_below_m: float
     """And below this: to higher ones knees give."""

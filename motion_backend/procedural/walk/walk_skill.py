@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from zlib import crc32
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from motion_backend.backend_protocol import Part
 from motion_backend.motion import FPS, Action, PhaseKind, Skill
 from motion_backend.procedural.body_state import Body, Point
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
-from motion_backend.procedural.held_poses import SPINE_LEAN, UP, bend, idle
+from motion_backend.procedural.held_poses import SPINE_LEAN, UP, bend, idle, idle_table
 from motion_backend.procedural.pose import Pose, interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
@@ -248,7 +249,11 @@ def stay(body: Body, part: Part) -> None:
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     does_it = style.stays > 0 and bool(style.doing)
     if action.stands and not does_it:
-        _stand_about(body, part.hold, replace(bearing, waits=style.bearing.waits))
+        said = style.bearing.waits
+        # Who does this does it in one way, and another thing or another person otherwise.
+        habit = np.random.default_rng((body.seed, crc32(action.caption.encode())))
+        waits = said if said != bearing.waits else idle_table().waiting(said, habit)
+        _stand_about(body, part.hold, replace(bearing, waits=waits))
         return
     if not does_it and (action.skill is not Skill.LOCO or action.goal is not None):
         body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))

@@ -14,7 +14,7 @@ from layers import sampled
 from small_home import DIRECTOR, after, contact, rise, small_home
 
 from motion_backend.backend_protocol import BodyState, PartKind
-from motion_backend.body.capsules import placed
+from motion_backend.body.capsules import BODIES, placed
 from motion_backend.body.joint_limits import limits_share
 from motion_backend.body.segment_masses import centres_of_mass
 from motion_backend.body.self_collision import self_penetration
@@ -102,6 +102,31 @@ def test_on_a_side_one_leg_lies_on_the_mattress_the_other_upon_it_and_no_hand_on
             assert surface + least < at[f"{name}_{joint}"][2] < surface + most
     assert at[f"{below}_shoulder"][2] < surface + 0.08
     assert np.linalg.norm(at[f"{above}_wrist"] - at["head"]) > 0.25
+
+
+def test_who_reads_or_has_the_hands_on_the_belly_lies_on_the_back_with_both_elbows_on_the_mattress() -> None:
+    for caption in ("reading on the back, book held above the chest", "hands on belly"):
+        at = held(caption, "bed")
+        assert max(at["left_elbow"][2], at["right_elbow"][2]) < 0.06, caption
+
+
+def test_the_upper_hand_of_who_lies_on_a_side_is_on_the_body_or_on_the_mattress() -> None:
+    for caption in ("side-lie on left, legs bent", "side-lie on left, legs crossed", "side-lie on right"):
+        motion = lie(caption, "sofa", which_has(STYLES[caption].side, "sofa"))
+        body = Kinematics.of(motion.part(len(motion) - 1, len(motion)))
+        starts, ends, radii = (
+            part[0] if part.ndim > 1 else part for part in placed(body.motion.skeleton, body.positions, body.world)
+        )
+        hand = [one.name for one in BODIES].index("right_hand" if STYLES[caption].side == "left" else "left_hand")
+        legs = [index for index, one in enumerate(BODIES) if one.name.endswith("thigh") or one.name == "pelvis"]
+        middle = 0.5 * (starts[hand] + ends[hand])
+        gaps = [
+            np.linalg.norm(middle - point) - radii[leg] - radii[hand]
+            for leg in legs
+            for point in np.linspace(starts[leg], ends[leg], 9)
+        ]
+        over = middle[1] - radii[hand] - (body.positions[0, 0, 1] - LYING_REST - 0.017)
+        assert min(*gaps, over) < 0.05, caption
 
 
 def test_curled_up_is_tighter_than_legs_bent() -> None:
