@@ -143,11 +143,11 @@ def _before(places: Array, depth: Array, clear: float) -> float:
 
 HOLLOW = 0.035
 """From the hollow of a knee that is bent over an edge to the middle of the knee (metres)."""
-MIN_EDGE, AT_TABLE = 0.07, 0.03
-"""Thighs rest on so much of a seat at least, and of one that is drawn on to be near a table (metres)."""
+MIN_EDGE = 0.07
+"""Thighs rest on so much of a seat at least (metres)."""
 FARTHEST_BACK = 45.0
 """Who leans back on stretched legs does so by as much at most (degrees)."""
-AT_EASE = 0.38
+AT_EASE = 0.42
 """Distance of a table's edge from the pelvis to which nobody draws nearer (metres)."""
 ABOUT = 1.4
 """A table in reach is within this distance of the pelvis (metres)."""
@@ -209,7 +209,7 @@ def _slid(spot: Spot, ahead: float) -> Spot:
 
 def _drawn_up(spot: Spot, obstacles: Obstacles) -> Spot | None:
     """The same seat sat on so far to the front that the table before it is near; None where no table is in reach."""
-    seat, forward = Seat.of(spot), max(spot.edge - AT_TABLE, 0.0)
+    seat, forward = Seat.of(spot), max(spot.edge - MIN_EDGE, 0.0)
     near = obstacles.near(seat.pelvis - ABOUT, seat.pelvis + ABOUT)
     table = table_before(seat, near, 1.0, TABLE_REACH + forward)
     if table is None:

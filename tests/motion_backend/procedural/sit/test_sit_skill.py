@@ -11,7 +11,7 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director
 from motion_backend.motion import Action, Character, Emotion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.procedural.sit.sit_skill import AT_TABLE, seat_for
+from motion_backend.procedural.sit.sit_skill import MIN_EDGE, seat_for
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Layout, Placed
@@ -53,7 +53,7 @@ def test_a_seat_drawn_up_is_moved_ahead_only_and_never_left(gap: float) -> None:
     assert moved == pytest.approx((moved @ ahead) * ahead)
     assert drawn.edge == pytest.approx(spot.edge - moved @ ahead)
     assert drawn.back == pytest.approx(spot.back + moved @ ahead)
-    assert drawn.edge >= AT_TABLE - 1e-9
+    assert drawn.edge >= MIN_EDGE - 1e-9
 
 
 def test_who_wants_no_table_sits_where_one_sits() -> None:
