@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
 from motion_backend.motion import RISINGS, Skill
@@ -12,6 +13,7 @@ from planner_service.composition.deed_reader import DeedReader
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.rest_place import is_sure, lies
 from planner_service.scripts.acted_beats import connects
+from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from scene_graphs.furniture import class_of
@@ -42,22 +44,9 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
         return False  # "falls face down on the bed": on it all the same
     if seated and (is_gainsaid(read.clause, new) or read.clause.verb in EXPRESSIONS or _FACE.search(read.text)):
         return True  # "climbs on a chair" is no sitting on it; nobody sits down for a sigh
-    last = done[-1] if done else None
-    rises = (
-        before.resting is not None
-        and last is not None
-        and (
-            last.skill not in _POSTURES
-            or any(one.skill in RISINGS for one in new)
-            or last.furniture != before.resting.furniture
-        )
-    )
-    if rises and last.skill is Skill.TOUCH and before.resting.skill is Skill.SITDOWN:
-        same = last.furniture == before.resting.furniture and not affords(last.furniture, "lie")
-        if same or (not deed.named and class_of(last.furniture) in SEATS):
-            return True  # nobody gets up for a seat
-    small = deed.row.small and (deed.is_gesture or lies(before.resting))
-    if rises and (small or (done[-1].skill in _POSTURES and is_gainsaid(read.clause, new))):
+    resting = before.resting
+    rises = resting is not None and bool(done) and _is_left(resting, done[-1], new)
+    if resting is not None and rises and _is_stayed_for(resting, read, deed, done[-1], new):
         return True
     if not done or deed.row.rests or deed.skill in RISINGS or reader.is_shown(read.clause, deed, done):
         return False
@@ -67,3 +56,21 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
     if max(reader.likelihood(read.clause, one) for one in done) < least:
         return True
     return rises and is_gainsaid(read.clause, done)
+
+
+def _is_left(resting: PlannedKeyframe, last: PlannedKeyframe, new: Sequence[PlannedKeyframe]) -> bool:
+    """Whether who rests gets up for new keyframes, or rests elsewhere."""
+    elsewhere = last.skill not in _POSTURES or last.furniture != resting.furniture
+    return elsewhere or any(one.skill in RISINGS for one in new)
+
+
+def _is_stayed_for(
+    resting: PlannedKeyframe, read: ReadBeat, deed: Deed, last: PlannedKeyframe, new: Sequence[PlannedKeyframe]
+) -> bool:
+    """Whether who rests stays, whatever it shows: for a seat, for what is small, for what another posture gainsays."""
+    if last.skill is Skill.TOUCH and resting.skill is Skill.SITDOWN:
+        same = last.furniture == resting.furniture and not affords(last.furniture, "lie")
+        if same or (not deed.named and class_of(last.furniture) in SEATS):
+            return True
+    small = deed.row.small and (deed.is_gesture or lies(resting))
+    return small or (last.skill in _POSTURES and is_gainsaid(read.clause, new))

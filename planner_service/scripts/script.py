@@ -42,7 +42,7 @@ Line = Annotated[str, BeforeValidator(legible)]
 def skill_of(said: object) -> Skill:
     """The skill of its name or of what people call it. PydanticKnownError, a ValueError, names all of them."""
     try:
-        return Skill(said)
+        return said if isinstance(said, Skill) else Skill(str(said))
     except ValueError:
         raise PydanticKnownError("enum", {"expected": skills_named()}) from None
 

@@ -81,7 +81,7 @@ def test_the_eyes_go_to_it_before_the_hand_moves() -> None:
 
 def test_the_less_the_eyes_have_to_go_the_less_a_body_has_begun_to_bend_when_they_are_there() -> None:
     row, looks_rad = touch_keys().reach.approach, touch_keys().reach.arriving.looks_rad
-    stands = standing(np.zeros(2), 0.0, Bearing(), build_skeleton(1.7))
+    stands = standing((0.0, 0.0), 0.0, Bearing(), build_skeleton(1.7))
     bent = replace(stands, spine=np.array([0.5, 0.0, 0.0]), head=np.array([0.6, 0.0, 0.0]))
     rates = []
     for nod in (0.0, 0.3, 0.45, 0.55):
