@@ -80,6 +80,8 @@ _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside"
 _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
+_DESK: Final = re.compile(r"writing|typing")
+"""Captions that want a table under the hands."""
 _TO_BED: Final = re.compile(r"\bto bed\b")
 """Who goes there, however they do, lies down."""
 _GOES_ON: Final = re.compile(r"(?:goes|went|go|carries|carried|carry|keeps|kept|keep) (?:on|going)(?:,| with\b|$)")
@@ -306,7 +308,9 @@ class KeyframeWriter:
     ) -> None:
         """Sit or lie: where one rests already if that does, with the caption of what is done there."""
         resting = self.body.resting
-        here = resting is not None and is_there(resting, deed, skill)
+        desk = bool(captions) and all(_DESK.search(one) for one in captions) and not deed.named
+        bed = resting is not None and furniture.group_of(resting.furniture) == "bed"
+        here = resting is not None and is_there(resting, deed, skill) and not (desk and bed)  # nobody writes on a bed
         shown = captions or captions_of(skill, mood)
         if here:  # where one sits already there need be no table
             shown = [one for one in shown if "table" not in one] or shown

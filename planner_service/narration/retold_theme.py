@@ -60,6 +60,7 @@ _PLURAL: Final = frozenset(("i", "we", "you", "they"))
 """Who does things in verbs' base forms."""
 _IT_IS: Final = re.compile(r"(“[^”]*”|\"[^\"]*\")|\b([Ii]t|[Hh]e|[Ss]he|[Tt]here|[Tt]hat)['’]s\b(?! been| \w+ed\b)")
 """What is said, else a contraction that has a past: "it's"."""
+_TORN: Final = ("it", "them", "up", "open", "off", "the", "apart", "down", "out", "a")
 _TENSELESS: Final = ("ing", "participle")
 
 
@@ -155,7 +156,9 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
-        return in_past(word) if before in SUBJECTS or ((head or joined) and not _is_noun(word, before)) else None
+        tears = word == "tears" and follows in _TORN  # no tears of somebody who weeps
+        finite = before in SUBJECTS or ((head or joined) and not _is_noun(word, before))
+        return in_past(word) if finite or tears else None
     if (
         form is None
         and base

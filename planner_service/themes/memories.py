@@ -47,6 +47,9 @@ def _is_recalled(before: Clause, clause: Clause) -> bool:
     thinks = before.verb in theme_words()["memory_verbs"]
     bare = RECALLING.issuperset(before.lemmas[1:])
     then = bool(_TIME.search(before.text)) and clause.joint in RECALLING
+    both = clause.joint in ("and", ",") and not clause.subject and clause.text.split()[0].endswith("ing")
+    if thinks and both and any(word.endswith("ing") for word in before.text.split()[1:3]):
+        return True  # "remembers being a girl | and skipping rope"
     if thinks:
         return clause.aside or then or (bare and clause.joint in RECALLING)
     return before.verb in _THINKING and (clause.aside or then)

@@ -64,6 +64,10 @@ _WHAT_IT_IS: Final = re.compile(
 """What was meant before is named: "unwraps it: a birthday cake"."""
 _SO: Final = re.compile(r"\bso (\w+)(?= (?:he|she|they|I|his|her|their|my) )")
 """What comes of how something is done: "laughs so hard | she has to sit down"."""
+_BESIDE: Final = re.compile(
+    r"(?<![,\w] )\b((?:[A-Z]\w+|[Tt]he|[Aa]n?)(?: \w+){0,2}), (?:her|his|their|my) (?:\w+ ){1,2}?\w+ing, (?=[a-z])"
+)
+"""How somebody is meanwhile, between who it is and what they do: "Grandma Ilse, her back aching, shuffles"."""
 _MEANWHILE: Final = re.compile(
     r"(?<=\w)(,? (?:and|but)|,) (?:at (?:dawn|dusk|night|noon|midnight|sunrise|sunset|last)"
     r"|(?:(?:in|by) the (?:end|evening|morning)|by (?:dawn|dusk|noon|midnight)|(?:some|a long) time later"
@@ -115,6 +119,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     quotes: list[str] = []
     text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
     text = _SO.sub(lambda one: f"{one[0]} that" if is_adjective(one[1].lower()) else one[0], text)
+    text = _BESIDE.sub(r"\1 ", text)
     text = _MEANWHILE.sub(lambda one: f"{one[1]} " if verb_of(one[2]) not in ("", one[2]) else one[0], text)
     text = _TITLE.sub(r"\1", text.replace("«", "“").replace("»", "”"))  # which stand for what is said below
 

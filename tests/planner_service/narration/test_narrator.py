@@ -356,6 +356,7 @@ def retold(theme: str, voice: Voice = SHE) -> str:
         ("Ana cannot find her glasses.", "Ana could not find her glasses."),
         ("She doesn't answer. It's late, and she's tired.", "Ana did not answer. It was late, and she was tired."),
         ("Ana looks, sees it's the cat, and says “It's you”.", "Ana looked, saw it was the cat, and said “It's you”."),
+        ("Ana takes the parcel, tears it open and smiles.", "Ana took the parcel, tore it open and smiled."),
         ("Ana takes a book, reads it and yawns.", "Ana took a book, read it and yawned."),
         ("She decides to sit and read.", "Ana decided to sit and read."),
         ("Ana is cross because it rains.", "Ana was cross because it rained."),

@@ -92,6 +92,10 @@ def test_whose_mother_calls_is_the_hero_and_not_the_mother() -> None:
     assert hero_of(clauses).lower() == "a teenager"
 
 
+def test_who_is_told_with_how_they_are_between_commas_is_the_hero() -> None:
+    assert hero_of(clauses_of_text("Grandma Ilse, her back aching, shuffles in. She sits down.")) == "Grandma Ilse"
+
+
 def test_a_baby_is_the_hero_only_where_nobody_is_he_or_she() -> None:
     assert hero_of(clauses_of_text("The baby is asleep. She tiptoes out.")) != "The baby"
     assert hero_of(clauses_of_text("The baby crawls to the sofa. It sits down.")) == "The baby"
