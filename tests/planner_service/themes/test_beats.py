@@ -43,6 +43,7 @@ def test_what_is_denied_is_undone_what_others_do_is_theirs_and_all_else_is_a_dee
     [
         ("She remembers how they used to dance here, and she sways.", ["memory", "memory", "deed"]),
         ("She remembers how they danced and laughed, and smiles.", ["memory", "memory", "memory", "deed"]),
+        ("She remembers being a girl and skipping rope.", ["memory", "memory"]),
         ("She recalls the day he left and shuts the window.", ["memory", "memory", "deed"]),
         ("He would always sit by the window. Now he lies down.", ["memory", "deed"]),
         ("He remembers where he left the keys and picks them up.", ["memory", "memory", "deed"]),
