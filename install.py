@@ -200,7 +200,7 @@ class Installer:
     """Puts packages into the environment: by uv, where it can be had and does it, else by pip."""
 
     def __init__(self, screen: Screen) -> None:
-        self.screen = screen
+        self.screen, self.told = screen, False
         self.python, self.uv = f"{VENV}/bin/python", VENV / "bin" / "uv"
 
     def get_uv(self, label: str) -> float:
@@ -228,7 +228,9 @@ class Installer:
         )
         environment = None if listed.returncode else as_uv(listed.stdout)
         if environment is None:
-            self.screen.say("    pip is configured in ways that uv does not know: pip does it")
+            if not self.told:
+                self.screen.say("    pip is configured in ways that uv does not know: pip does it")
+            self.told = True
             return run(self.screen, label, pip)
         try:
             by_uv = [str(self.uv), "pip", "install", "--python", self.python, *words]

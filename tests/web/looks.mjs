@@ -30,7 +30,14 @@ async function form(page) {
       const pairs = [...document.querySelectorAll(".editor label[for^=take]")].map((label) => ({ name: label.textContent, label: box(label), field: box(document.getElementById(label.htmlFor)) }));
       return { pairs, rows: all(".draft"), list: box(document.querySelector(".drafts")), play: box(document.querySelector(".editor-foot .primary")), foot: box(document.querySelector(".editor-foot")), controls: all(".controls > *") };
     });
-    told.push({ width, height, sideways: await overhang(page), ...boxes });
+    // Wherever one has scrolled to, the form lies over nothing else.
+    const over = [];
+    for (const down of [0, 250, 500]) {
+      await page.evaluate((y) => window.scrollTo(0, y), down);
+      await page.waitForTimeout(80);
+      over.push(await page.evaluate(() => document.querySelector(".editor").getBoundingClientRect().bottom - document.querySelector(".backstage").getBoundingClientRect().top));
+    }
+    told.push({ width, height, over, sideways: await overhang(page), ...boxes });
   }
   return told;
 }

@@ -250,6 +250,7 @@ def test_the_script_is_changed_in_sight_of_what_belongs_together(looked: dict[st
     for laid in looked["form"]:
         size = laid["width"], laid["height"]
         assert laid["sideways"] <= 0, size
+        assert max(laid["over"]) <= 0, (size, laid["over"])
         assert [pair["name"] for pair in laid["pairs"]] == ["Seed", "Moved by", "Played in"]
         for pair in laid["pairs"]:
             label, field = pair["label"], pair["field"]

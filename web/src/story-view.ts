@@ -162,6 +162,7 @@ export class StoryView {
       fill(this.#book, editor.element);
       if (!asked) return;
       this.film.player.pause();
+      this.element.scrollIntoView({ block: "start" });
       editor.focus();
     } catch (error) {
       this.#change.disabled = false;
