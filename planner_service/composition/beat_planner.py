@@ -13,13 +13,14 @@ from typing import Final
 import numpy as np
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import Deed, unshown
+from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.composition.rest_place import BY_A_WALL
+from planner_service.composition.unshown import unseen
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
@@ -166,7 +167,7 @@ def _besides(
     if read.beat.kind != "deed":
         return ()
     by = BY_A_WALL.search(read.text) if all(one.skill in (Skill.SITDOWN, Skill.LIEDOWN) for one in own) else None
-    besides = unshown(read.clause, {one.piece[0] for one in own})
+    besides = unseen(read.clause, own)
     # Seats stand where they do.
     return (*besides, by[0]) if by and not any(by[0] in one for one in besides) else besides
 

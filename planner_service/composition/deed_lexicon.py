@@ -78,6 +78,7 @@ _PLACED: Final = frozenset(("in", "on", "under", "behind", "beneath", "below", "
 """Words that each place of a list begins with."""
 _INSIDE: Final = re.compile(r"\b(?:crawl|creep|crept|climb|slip|squeez)\w* (?:back )?(?:inside|in)(?: with\b|$)")
 """Into what was named before."""
+_ON_IT: Final = re.compile(r"\b(?:on|onto) it\b")
 _ALONE: Final = frozenset(("picture", "clock"))
 """Pieces that, as lamps, are themselves what something is done to."""
 _PICTURES: Final = frozenset(("photo", "photograph", "portrait", "frame", "poster", "drawing", "sketch", "wall"))
@@ -373,17 +374,6 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     return None
 
 
-def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
-    """What a clause tells besides its deed, and neither the furniture that is used nor the deed's own saying has: "for
-    her ladyship"."""
-    row = said_row(clause)
-    known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says)) if row else ()) - grammar().prepositions
-    return tuple(
-        text for text in details_of(clause)
-        if known.isdisjoint(_lemmas(text)) and not (pieces_in(text) and set(used).issuperset(pieces_in(text)))
-    )  # fmt: skip
-
-
 def _named(clause: Clause, about: str) -> list[str]:
     """Furniture that a clause names, or means by "it" and "there"."""
     meant = _IT & set(clause.lemmas[1:]) or _INSIDE.search(clause.text)
@@ -396,8 +386,10 @@ def row_of(clause: Clause, about: str) -> DeedRow | None:
 
 
 def _spelt_out(clause: Clause, about: str) -> Clause:
-    """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers."""
-    meant = next((word for word in _lemmas(about) if word in things()), "")
+    """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers, of a sofa "jumps on it" is
+    on the sofa."""
+    on = _ON_IT.search(clause.text) and pieces_in(about)
+    meant = on[-1] if on else next((word for word in _lemmas(about) if word in things()), "")
     if not meant or not {"it", "them"} & set(clause.lemmas[1:]):
         return clause
     known = replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))

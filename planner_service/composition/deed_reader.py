@@ -32,7 +32,8 @@ from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
-from planner_service.themes.protagonist import is_person
+from planner_service.themes.protagonist import head_of, is_person
+from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
@@ -97,6 +98,7 @@ TOUCHES: Final = (
 
 IN_HANDS: Final = ("phone", "piano", "controller", "typing", "writing", "eating", "drinking", "book", "music")
 """Parts of captions in which hands are seen with a thing."""
+_INSTRUMENTS: Final = frozenset((*things_called("instrument"), "piano", "keyboard", "organ"))
 _PLAYS: Final = ("play", "practise", "practice", "strum", "tune", "perform", "pluck")
 """Verbs of what is done with the instrument that was named last."""
 _THINGS: Final = re.compile(
@@ -137,7 +139,7 @@ class DeedReader:
         """Think about the clauses of beats as they follow each other, all at once."""
         named = ""
         for one in read:
-            named = next((word for word in one.clause.lemmas if word in things_called("instrument")), named)
+            named = next((word for word in one.clause.lemmas if word in _INSTRUMENTS), named)
             if one.clause.verb in _PLAYS and named:
                 self._instruments[one.clause.text] = named
         told = [_WHEN.sub("", one.text) for one in read]  # with whose deeds they are
@@ -187,10 +189,12 @@ class DeedReader:
         return replace(found, pieces=tuple(sorted(bearing, key=lambda one: -at(likely, one) if likely else 0)))
 
     def _deed(self, clause: Clause, about: str) -> Deed | None:
+        if "asleep" in clause.lemmas and lemma_of(head_of(clause.subject)) in theme_words()["body"]:
+            return None  # "her leg falls asleep"
         told, likely, never = deed_of(clause, about), self.likely(clause), self._never(clause)
         if told is not None and never:
             told = _without(told, never)
-            if told is None or (told.row.captions and self._misled(clause)):
+            if (told is None or told.row.captions) and self._misled(clause):
                 return told  # nothing else is played for what would be shown by its opposite
         if likely is None or (told is not None and (told.row.why or told.is_gesture)):
             return told
@@ -208,6 +212,8 @@ class DeedReader:
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
             return told
+        if told is not None and most < SURELY and _only_seems(likely.best, clause):
+            return told  # who crumples a letter does not eat it
         if most < LIKELY:
             return told if told is not None and known > UNLIKELY else None
         return deed_of(clause, about, learned_row(clause, likely)) or told
@@ -351,6 +357,11 @@ def _idle(skill: Skill, some: Sequence[str], clause: Clause) -> Sequence[str]:
     """Those of some captions in which hands do nothing with a thing that is not told of; all where there are none."""
     idle = [one for one in some if not any(part in one for part in IN_HANDS) or shows(skill, one, clause, own=True)]
     return idle or some
+
+
+def _only_seems(best: tuple[Skill, str], clause: Clause) -> bool:
+    """Whether hands do something with a thing in what a clause is likeliest shown by, which it does not tell of."""
+    return any(part in best[1] for part in IN_HANDS) and not shows(*best, clause, own=True)
 
 
 def _rising(deed: Deed, likely: Likely) -> Skill:

@@ -23,6 +23,7 @@ from planner_service.composition.deed_lexicon import (
     deed_table,
     listed_places,
     names_things,
+    object_of,
     pieces_in,
     room_of,
     row_of,
@@ -36,6 +37,7 @@ from planner_service.composition.mood_captions import captions_of, fitting, walk
 from planner_service.composition.rest_place import (
     GETS_THERE,
     dozing,
+    eats,
     goes_on,
     is_beside,
     is_there,
@@ -159,12 +161,13 @@ class KeyframeWriter:
         """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
         read = beats[index]
         beat = read.beat
-        deed = self._deed(read.clause) if beat.kind == "deed" else None
+        deed = self._deed(index, beats) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         nexts = beats[index + 1 :]
         self._ahead = next(filter(None, (one.room or room_of(one.clause) for one in nexts)), None)
         if beat.kind in NOT_ACTED:
             self.why[index] = _not_acted(read)
+            self.body.whereabouts.told(read.clause)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
         elif deed is not None and (row := self._within(read)) is not None:
@@ -182,8 +185,12 @@ class KeyframeWriter:
         else:
             self.why[index] = UNSHOWN
 
-    def _deed(self, clause: Clause) -> Deed | None:
-        """What a clause does; who starts again does what was tried last, else done at rest last, else done first."""
+    def _deed(self, index: int, beats: Sequence[ReadBeat]) -> Deed | None:
+        """What a beat does; who starts again does what was tried last, else done at rest last, else done first, and who
+        "knocks again" does it where they did."""
+        clause = beats[index].clause
+        if (before := self._done_before(index, beats)) is not None:
+            return before
         again = clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas)
         if again and not self.deeds:
             return None
@@ -191,6 +198,19 @@ class KeyframeWriter:
             done = list(self.deeds.values())
             return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return self.reader.deed(clause, self._about)
+
+    def _done_before(self, index: int, beats: Sequence[ReadBeat]) -> Deed | None:
+        """The last deed of the same verb, where it was done, of who does it again and names nothing; None of others."""
+        clause = beats[index].clause
+        told = clause.lemmas[: clause.lemmas.index("again")] if "again" in clause.lemmas else ()
+        if not told or object_of(replace(clause, lemmas=told)) not in ("", "it"):
+            return None
+        same = next((at for at in range(index - 1, -1, -1) if beats[at].clause.verb == clause.verb), None)
+        deed = self.deeds.get(same) if same is not None else None
+        if deed is None or deed.skill not in (Skill.TOUCH, Skill.SITDOWN, Skill.LIEDOWN):
+            return None
+        spot = next((one.furniture for one in reversed(self.keyframes) if one.beat == same), "")
+        return replace(deed, pieces=(spot,), named=True) if spot else deed
 
     def _within(self, read: ReadBeat) -> DeedRow | None:
         """The row of what is part of what is seen already: nobody goes anywhere to hang up, or close a book."""
@@ -262,6 +282,8 @@ class KeyframeWriter:
             return
         resting = self.body.resting
         match deed.skill:
+            case Skill.STANDUP if self.keyframes and resting is None and is_beside(read):
+                self.body.show(index)  # "eats, standing up"
             case Skill.STANDUP | Skill.GETUP if not self.keyframes:
                 self._begin(index, deed, mood)
                 if not rises_later and self.body.resting is not None:
@@ -274,6 +296,9 @@ class KeyframeWriter:
                 self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
             case Skill.LOCO if deed.row.lying and lies(resting) and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
+            case Skill.LOCO if resting is not None and lies(resting) and not deed.named and eats(deed):
+                deed = replace(deed, pieces=(resting.furniture,), named=True)  # sitting up
+                self._rest(index, read, deed, mood, Skill.SITDOWN, deed.row.seated)
             case Skill.LOCO if deed.row.seated and lies(resting) and not deed.named:
                 self.body.show(index)  # "lies there and stares at the wall"
             case Skill.LOCO:

@@ -73,6 +73,11 @@ def is_sure(read: ReadBeat, deed: Deed) -> bool:
     return fetches or goes or (deed.skill in (Skill.SITDOWN, Skill.LIEDOWN) and read.clause.verb in _SLEEPS)
 
 
+def eats(deed: Deed) -> bool:
+    """Whether it is eating or drinking, for which who lies sits up."""
+    return deed.is_gesture and any("drinking" in one or "eating" in one for one in deed.row.seated)
+
+
 def dozing(resting: PlannedKeyframe | None, read: ReadBeat, reader: DeedReader) -> tuple[str, ...]:
     """Ways of sitting on what cannot be lain on that show what is else done lying: "nods off"."""
     likely = reader.likely(read.clause)

@@ -6,10 +6,12 @@ import re
 from dataclasses import dataclass, field
 from typing import Final
 
-from planner_service.composition.deed_lexicon import Deed, object_of
-from planner_service.themes.lexicon import grammar, is_noun
+from planner_service.composition.deed_lexicon import Deed, object_of, pieces_in
+from planner_service.themes.lexicon import grammar, is_noun, lemma_of
+from planner_service.themes.protagonist import head_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from scene_graphs.furniture import class_of
 
 Spot = tuple[str | None, str]
@@ -22,6 +24,7 @@ _IN_HAND: Final = frozenset(["hold", "clutch", "close", "shut", "fold", "unfold"
 """What is so is done in the hands, where the thing is in them."""
 _HELD: Final = re.compile(
     r"(?:holding|clutching|hugging|cradling|gripping|grasping|carrying|wearing|still holding"
+    r"|[\w\s]+ in (?:his|her|their) hands?$"
     r"|lean(?:ing|s)? (?:heavily )?on (?:a|the|his|her|their) (?:\w+ )?(?:cane|stick|crutch\w*|walker|frame))\b",
     re.IGNORECASE,
 )
@@ -82,6 +85,13 @@ class Whereabouts:
             self._named = noun
             self._spots.setdefault(noun, []).append(spot)
             self._held.discard(noun)
+
+    def told(self, clause: Clause) -> None:
+        """Where a thing is told to be, and that it is spoken of: "the letter lies on the table"."""
+        noun = lemma_of(head_of(clause.subject))
+        if noun in things():
+            self._named = noun
+            self._spots.setdefault(noun, []).extend((None, piece) for piece in pieces_in(clause.text)[:1])
 
     def in_hand(self, clause: Clause) -> bool:
         """Whether a clause's deed is done in the hands, to what is in them: who took the album "closes the album"."""

@@ -39,7 +39,10 @@ _ANYBODY: Final = frozenset(("person", "character", "protagonist", "man", "woman
 _NO_ONE_PERSON: Final = frozenset(("who", "which", "that", "everyone", "everybody", "nobody", "all", "both"))
 _NOBODY: Final = ("person", "character", "protagonist")
 """Those of them that are no words of a story."""
-_FIRST: Final = {"i": "they", "me": "them", "my": "their", "mine": "theirs", "myself": "themself"}
+_FIRST: Final = {
+    "i": "they", "me": "them", "my": "their", "mine": "theirs", "myself": "themself",
+    "we": "they", "us": "them", "our": "their", "ours": "theirs", "ourselves": "themself",
+}  # fmt: skip
 _SECOND: Final = {"you": "they", "your": "their", "yours": "theirs", "yourself": "themself"}
 _THIRD: Final = {
     "he": {"he": "they", "him": "them", "his": "their", "himself": "themself"},
@@ -200,7 +203,9 @@ def _tell_of(voice: Voice, tokens: Sequence[Token], hero: str, own: str) -> None
         word, space, rest = token.told.partition(" ")  # "I was" of "I'm"
         if blank := blanks.get(word.lower()):
             owns = word.lower() != "her" or _OWNS.match("".join(one.text for one in tokens[at + 1 : at + 3]))
-            token.told, token.is_name = voice[blank if owns else "them"] + space + rest, True
+            first = blank == "their" and mine and not any(one.is_name for _, one in words)
+            own = f"{voice.name}'s" if first else voice[blank if owns else "them"]  # "My father used to sing here"
+            token.told, token.is_name = own + space + rest, True
     _name(voice, tokens, hero)
     for (_, before), (_, token) in pairwise(words):
         if before.told.lower() == "they" and token.told == "was":

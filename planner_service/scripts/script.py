@@ -240,9 +240,15 @@ class LongScript(_ScriptPart):
     seed: int = 0
 
     def said_of(self, keyframe: PlannedKeyframe) -> str:
-        """The theme's words of all that a keyframe shows; not of what somebody put it in the place of."""
+        """The theme's words of all that a keyframe shows, with the door or window that "it" means; not of what somebody
+        put it in the place of."""
         shown = {keyframe.beat, *keyframe.also}  # keyframes of one's own may name beats of another story
-        return "; ".join(beat.text for number, beat in enumerate(self.beats) if number in shown and not beat.replaced)
+        texts = [beat.text for beat in self.beats]
+        return "; ".join(
+            spelt_out(beat.text, texts[:number])
+            for number, beat in enumerate(self.beats)
+            if number in shown and not beat.replaced
+        )
 
     @property
     def acted(self) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from typing import Final, Literal
 
 from motion_backend.motion import Skill
@@ -19,12 +20,16 @@ _HANDLES: Final = re.compile(
     r"(?:(?!by|at|near|beside|under|from|to|on|in\b)\w+\s){0,3}(?:windows?|curtains?|blinds?|shutters?)\b",
     re.IGNORECASE,
 )
-_OF_A_HOUSE: Final = r"(?:(?:the|a|an|his|her|their|my|its|front|back|outer|heavy|street|kitchen|bedroom|room) )*"
+_OF_A_HOUSE: Final = (
+    r"(?:(?:the|a|an|his|her|their|my|its|front|back|outer|heavy|street|kitchen|bedroom|bathroom"
+    r"|garden|balcony|garage|cellar|study|room) )*"
+)
 _OPENS: Final = re.compile(
     r"\b(?:open|clos|shut|slam|bang|lock|unlock|bolt|unbolt|latch|unlatch|answer|push|pull|kick|yank|throw|fling|swing"
     rf"|get|knock|check|tr(?:y|ies|ied))\w*\s(?:\w+ly\s)?(?:(?:at|on|against|behind) )?{_OF_A_HOUSE}"
     r"(?:doors?|doorbell|bell|doorknob|door handle)\b(?! of)"
     r"|\banswer\w* (?:the|a) knock\b"
+    r"|\bknock(?:s|ed|ing)?(?: (?:again|once|twice|thrice|softly|loudly|gently|timidly|harder))*(?=$|[,;])"
     r"|\blet(?:s|ting)? (?:(?:the|a|his|her|their|my) )?"
     r"(?:cat|dog|guests?|friends?|him|her|them|visitors?) (?:in|out)\b",
     re.IGNORECASE,
@@ -45,6 +50,30 @@ _NOT_IN: Final = re.compile(
     r"\b(?:in|inside) (?:the|a|an|his|her|their|my|bed|circles?|front|silence|despair|pain)\b", re.IGNORECASE
 )
 """Where one is, or how, and not that one comes in."""
+
+
+_HANDLES_IT: Final = re.compile(
+    r"\b((?:open|clos|shut|slam|bang|lock|unlock|bolt|latch|crack|push|pull|fling|throw)\w*) (it)\b", re.IGNORECASE
+)
+_MAY_BE_OPENED: Final = re.compile(
+    r"\b(?:(window|curtain|blind|shutter)s?|(door)s?|letters?|envelopes?|parcels?|packages?|presents?|gifts?|box(?:es)?"
+    r"|drawers?|books?|diary|album|fridge|refrigerator|freezer|cupboards?|wardrobe|closet|cabinet|chest|bags?|suitcase|case"
+    r"|jars?|bottles?|cans?|tins?|lid|oven|microwave|laptop|umbrella|safe|locker)\b",
+    re.IGNORECASE,
+)
+
+
+def spelt_out(said: str, before: Sequence[str]) -> str:
+    """Words with the window or door that "it" means in them, of what was said before, the last last: who stands at the
+    window "opens | the window"."""
+    if not _HANDLES_IT.search(said):
+        return said
+    for text in reversed([*before, said]):
+        named = [*_MAY_BE_OPENED.finditer(text)]
+        if named:
+            meant = next(filter(None, named[-1].groups()), "").lower()
+            return _HANDLES_IT.sub(rf"\1 the {meant}", said) if meant else said
+    return said
 
 
 def opening_of(skill: Skill, said: str) -> Kind | None:

@@ -323,7 +323,7 @@ def is_person(subject: str) -> bool:
     if len(head) > 4 and head.endswith(("er", "or")) and not made:  # a "baker" is one who bakes
         stem = head.lower()[:-2]
         return any(kinds_of(verb) and is_third_person(verb) for verb in (f"{stem}s", f"{stem}es"))
-    return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress"))
+    return len(head) > 5 and head.lower().endswith(("ist", "ian", "man", "woman", "person", "ress", "naut"))
 
 
 def names_somebody(clause: Clause) -> bool:
@@ -378,7 +378,7 @@ def tells_of_others(clause: Clause, clauses: Sequence[Clause], hero: str, pronou
 def head_of(subject: str) -> str:
     """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
     words: list[str] = []
-    for token in tokens_of(subject):
+    for token in tokens_of(re.sub(r"\bback (?:home|from|at|in)\b.*", "", subject)):
         stops = grammar().prepositions | grammar().adverbs | NAMING | {"of", "who", "and", ","}
         if words and token.low in stops:
             break

@@ -144,7 +144,7 @@ def has_verb(text: str) -> bool:
 def is_plural(word: str) -> bool:
     """Whether a word may be the plural of a noun, or mean several people."""
     nouns = kinds_of(word).get("NOUN", ())
-    return (bool(nouns) and word not in nouns) or word in _SEVERAL
+    return any(noun != word for noun in nouns) or word in _SEVERAL
 
 
 def is_adverb(word: str) -> bool:
@@ -249,7 +249,7 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = _goes_on(after) or after in (",", "and")
         goes_on = after in grammar().marks or is_noun(after)
-        acts = not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks and at <= 2)
+        acts = not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks | grammar().numbers and at <= 2)
         return (past(base) == base and named) or (is_plural(before) and acts)
     return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
 

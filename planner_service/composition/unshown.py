@@ -1,0 +1,109 @@
+"""What an acted beat tells besides its deed, and no keyframe of it shows: for whom, with what, where and how often."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+from typing import Final
+
+from motion_backend.motion import Skill
+from planner_service.composition.deed_lexicon import deed_table, pieces_in, said_row
+from planner_service.scripts.script import PlannedKeyframe
+from planner_service.scripts.script_words import affords
+from planner_service.themes.details import details_of
+from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.things import things
+from planner_service.themes.verb_finder import tokens_of
+from scene_graphs.furniture import categories_of
+
+_PLACE: Final = re.compile(
+    r"\b(?P<how>on top of|on|onto|upon|in|into|inside|under|underneath|beneath|behind|against|through|over)"
+    r" (?P<what>(?:the|an?|his|her|their|my|its|every|each) (?:[\w'-]+ ){0,2}?[\w'-]+)(?= (?:\w+ly|and|to|with|while"
+    r"|for|until|as|again)\b|[,.;]|$)",
+    re.IGNORECASE,
+)
+"""Where a deed is told to be done."""
+_PARTICLES: Final = frozenset(
+    ("turn", "switch", "put", "flick", "click", "take", "pull", "try", "have", "throw", "slip", "start", "plug", "look",
+     "work", "hand", "leaf", "flip", "page", "browse", "call", "check", "come", "sleep", "play", "go", "think", "count", "live")
+)  # fmt: skip
+"""Verbs after which such a word is theirs, and no place: "puts on the kettle", "looks over the bill"."""
+_ON: Final = frozenset(("on top of", "on", "onto", "upon"))
+_HIDDEN: Final = frozenset(("under", "underneath", "beneath", "behind", "in", "into", "inside", "through"))
+_OFTEN: Final = re.compile(
+    r"\b(?:twice|thrice|(?:two|three|four|five|six|seven|eight|nine|ten|a dozen|many|several|a hundred) times"
+    r"|again and again|over and over(?: again)?|one by one|one after (?:another|the other))\b",
+    re.IGNORECASE,
+)
+"""How often, of what is seen once."""
+_EACH: Final = re.compile(r"\b(?:each|every|all)(?= (?:of )?(?:the |his |her |their |my )?(?P<what>[\w'-]+))", re.IGNORECASE)
+_SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
+"""Of captions that do it several times."""
+
+
+def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
+    """What a clause tells besides its deed, and neither the furniture that is used nor the deed's own saying has: "for
+    her ladyship"."""
+    row = said_row(clause)
+    known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says)) if row else ()) - grammar().prepositions
+    return tuple(
+        text for text in details_of(clause)
+        if known.isdisjoint(map(lemma_of, _words(text))) and not (pieces_in(text) and set(used).issuperset(pieces_in(text)))
+    )  # fmt: skip
+
+
+def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, ...]:
+    """The same of the keyframes that show it, with places where the body is not, and how often it does what it does
+    once."""
+    besides = unshown(clause, {one.piece[0] for one in keyframes})
+    more = (*_places(clause, keyframes), *_counts(clause, keyframes))
+    return (*besides, *(text for text in more if not any(text in one for one in besides)))
+
+
+def _words(text: str) -> list[str]:
+    return [token.low for token in tokens_of(text)]
+
+
+def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
+    """Furniture and things that it is told to be done on, in, under or against, where no keyframe is."""
+    first = clause.text.split(" ", 1)[0]
+    found = []
+    for place in _PLACE.finditer(clause.text):
+        how, what = place["how"].lower(), place["what"]
+        beside_verb = clause.text[: place.start()].strip() == first
+        if beside_verb and clause.verb in _PARTICLES:
+            continue
+        if _is_place(what) and not any(_is_at(one, how, what) for one in keyframes):
+            found.append(place[0])
+    return found
+
+
+def _is_place(what: str) -> bool:
+    """Whether words name furniture or a thing; no room, time or part of a body."""
+    return bool(pieces_in(what)) or lemma_of(_words(what)[-1]) in things()
+
+
+def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
+    """Whether a keyframe is seen to be there, as far as its furniture and its caption tell."""
+    if any(lemma_of(word) in map(lemma_of, _words(keyframe.caption)) for word in _words(what)[1:]):
+        return True  # "reads in the book": that is in the hands
+    pieces = pieces_in(what)
+    kinds = categories_of(keyframe.piece[0])
+    meant = [*pieces, *(seat for piece in pieces for seat in deed_table().seats_at.get(piece, ()))]
+    there = any(not kinds.isdisjoint(categories_of(piece)) for piece in meant)
+    if keyframe.skill is Skill.LOCO:  # it stands before it
+        return there and how not in _ON | _HIDDEN
+    if keyframe.skill is Skill.TOUCH:  # what hands do to a thing is seen where it is kept
+        return there or not pieces
+    under = how in _HIDDEN and bool(pieces) and not any(affords(piece, "sit") or affords(piece, "lie") for piece in pieces)
+    return there and (how == "behind" or not under)
+
+
+def _counts(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
+    """How often, and to how many, of what is done once."""
+    done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor] or list(keyframes)
+    if len(done) > 1 or any(_SEEN_OFTEN.search(one.caption) for one in done):
+        return []
+    counted = [one[0] for one in _OFTEN.finditer(clause.text)]
+    return [*counted, *(one[0] for one in _EACH.finditer(clause.text) if _is_place(f"the {one['what']}"))]
