@@ -32,8 +32,9 @@ from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.opening_words import opening_of
 from planner_service.themes.protagonist import head_of, is_person
-from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
@@ -71,6 +72,8 @@ HARDLY: Final = 0.6
 """Who rests does not get up for what is less likely to show a clause."""
 SURELY: Final = 0.95
 """What the table of deeds does not take for shown is if it is so likely."""
+MOUTHED: Final = 0.85
+"""Who is not told to eat or drink does not where it is less likely than this and the table has another deed."""
 MOODY: Final = 0.4
 """A mood that shows a clause so likely is its mood."""
 FELT: Final = 0.6
@@ -106,8 +109,13 @@ _THINGS: Final = re.compile(
 )
 """What begins so is done by a thing, or by nobody: "the latch clicks"."""
 
+_AT_TABLES: Final = ("dining chair", "chair", "office chair")
+"""Seats that stand at tables."""
 _RESTING: Final = ("sit", "lie", "perch", "sink", "settle", "flop", "slump", "collapse")
 """Verbs of which who sits or lies there is all that is told."""
+_NOT_DRAWN: Final = grammar().prepositions | frozenset(
+    ("up", "near", "back", "out", "aside", "apart", "close", "closer", "away", "breath", "bath", "curtain", "conclusion")
+)
 _SMILES: Final = ("smile", "grin", "beam", "smirk")
 _NOBODY: Final = frozenset(("no", "nobody", "nothing", "none", "neither", "few", "hardly"))
 """What is done by these is not done."""
@@ -198,6 +206,8 @@ class DeedReader:
                 return told  # nothing else is played for what would be shown by its opposite
         if likely is None or (told is not None and (told.row.why or told.is_gesture)):
             return told
+        if told is not None and told.row.captions and opening_of(told.skill, clause.text):
+            return told  # every home has doors and windows
         skill, best = likely.best
         most = likely.captions[skill, best]
         known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
@@ -212,7 +222,9 @@ class DeedReader:
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
             return told
-        if told is not None and most < SURELY and _only_seems(likely.best, clause):
+        if told is not None and _says_so(told, clause):
+            return told
+        if told is not None and most < MOUTHED and _only_seems(likely.best, clause):
             return told  # who crumples a letter does not eat it
         if most < LIKELY:
             return told if told is not None and known > UNLIKELY else None
@@ -223,8 +235,12 @@ class DeedReader:
         likely = self.likely(one.clause) if one.beat.kind in ("deed", "feeling", "other") else None
         if one.beat.kind == "deed" and one.clause.verb in _SMILES:  # seen in a face
             return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
-        told = deed_of(one.clause) if one.beat.kind == "deed" else None
-        if likely is None or (told is not None and told.is_gesture):
+        told = deed_of(one.clause) if one.beat.kind in ("deed", "feeling") else None
+        if one.beat.kind == "feeling":
+            does = told is not None and told.is_gesture and not (told.row.small or told.row.mood)  # "gets dressed"
+            one = replace(one, beat=one.beat.model_copy(update={"kind": "deed"})) if does else one
+            told = told if does else None
+        if likely is None or (told is not None and (told.is_gesture or opening_of(told.skill, one.text))):
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
@@ -248,6 +264,8 @@ class DeedReader:
         if deed.is_gesture and not deed.row.stands:
             own = (*deed.row.captions, *deed.row.seated, *deed.row.lying)
             return any(one.caption in own for one in keyframes)
+        if _says_so(deed, clause) and any(one.caption in deed.row.captions for one in keyframes):
+            return True
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
         if likely is None or not keyframes or deed.row.stands:
             return by_table
@@ -359,9 +377,17 @@ def _idle(skill: Skill, some: Sequence[str], clause: Clause) -> Sequence[str]:
     return idle or some
 
 
+def _says_so(deed: Deed, clause: Clause) -> bool:
+    """Whether the table has a deed in which hands are seen with a thing, and the clause tells of just that."""
+    if clause.verb == "draw" and (pieces_in(clause.text) or not _NOT_DRAWN.isdisjoint(clause.lemmas)):
+        return False  # "draws up a bench", "draws a bath"
+    own = [one for one in deed.row.captions if any(part in one for part in IN_HANDS)]
+    return bool(own) and deed.skill is deed.row.skill and all(shows(deed.skill, one, clause, own=True) for one in own)
+
+
 def _only_seems(best: tuple[Skill, str], clause: Clause) -> bool:
-    """Whether hands do something with a thing in what a clause is likeliest shown by, which it does not tell of."""
-    return any(part in best[1] for part in IN_HANDS) and not shows(*best, clause, own=True)
+    """Whether somebody eats or drinks in what a clause is likeliest shown by, which it does not tell of."""
+    return any(part in best[1] for part in ("eating", "drinking")) and not shows(*best, clause, own=True)
 
 
 def _rising(deed: Deed, likely: Likely) -> Skill:
@@ -412,11 +438,12 @@ def learned_row(clause: Clause, likely: Likely) -> DeedRow:
         return tuple(_idle(other, found, clause) if clause.verb else found)  # "a cup of tea"
 
     some = of(skill)
+    table = skill is Skill.SITDOWN and any("table" in one or "keyboard" in one for one in some)
     everything = len(some) > ANY * len(_learned(skill))
     return DeedRow(
         (clause.verb or clause.text,),
         skill,
-        at=likeliest_pieces(likely) if skill is Skill.TOUCH else (),
+        at=likeliest_pieces(likely) if skill is Skill.TOUCH else _AT_TABLES if table else (),
         captions=() if everything else some,
         lying=of(Skill.LIEDOWN) if skill is Skill.SITDOWN else (),
         seated=of(Skill.SITDOWN) if skill is Skill.LOCO else (),

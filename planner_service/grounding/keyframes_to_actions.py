@@ -23,6 +23,7 @@ from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
+from planner_service.grounding.lingering import lingering
 from planner_service.grounding.opening_places import LACKS, OpeningPlace, entry, opening_place
 from planner_service.grounding.running_places import LONG_ENOUGH, runs, way_to_run
 from planner_service.grounding.seat_tables import done_at_tables
@@ -180,8 +181,12 @@ def act(
     drafts[:1] = [replace(one, begins=entered) for one in drafts[:1] if not one.already] or drafts[:1]
     begins = entered[:2] if entered is not None else scene.beginning(seed)[0]
     hands = Hands()
-    return tuple(hands.follow(action, done_in(keyframes[action.keyframe].caption))
-                 for action in stage.walks(drafts, places, begins, aimed))  # fmt: skip
+    return tuple(
+        lingering(
+            hands.follow(action, done_in(keyframes[action.keyframe].caption)), said[action.keyframe] if said else ""
+        )
+        for action in stage.walks(drafts, places, begins, aimed)
+    )
 
 
 class _Stage:

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from motion_backend.motion import Emotion, Skill
+from motion_backend.procedural.walk.walk_styles import walk_style
 from planner_service.grounding.seat_tables import tables_of
-from planner_service.scripts.script import LongScript
+from planner_service.scripts.caption_actions import look_of
+from planner_service.scripts.script import LongScript, PlannedKeyframe
 from scene_graphs.furniture import canonical, categories_of
 from scene_graphs.layout import Layout
 
@@ -24,7 +27,8 @@ def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) 
     """The script with a room at every keyframe, one of `types`; what has a room keeps it.
 
     The body stays where it is as long as that kind of room usually has what is used next, or some of them have all that
-    is used there. A keyframe on the floor plays where the next piece of furniture is.
+    is used there. A keyframe on the floor plays where the next piece of furniture is; where the body is, if it stays on
+    the spot.
     """
     if all(keyframe.room for keyframe in script.keyframes):
         return script
@@ -34,7 +38,8 @@ def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) 
     for keyframe, table in zip(script.keyframes, tables_of(script.keyframes), strict=True):
         wanted = () if keyframe.on_floor else _wanted(keyframe.piece[0], table)
         if keyframe.room or keyframe.on_floor:
-            rooms.append(keyframe.room)
+            here = room if _stays(keyframe) else None
+            rooms.append(keyframe.room or here)
         else:
             shares = shares_of(keyframe.piece[0], layouts, types, table)
             stays = room is not None and (shares.get(room, 0.0) >= USUAL or not any(shares.values()))
@@ -48,6 +53,12 @@ def housed(script: LongScript, layouts: Sequence[Layout], types: Sequence[str]) 
         rooms[index] = rooms[index] or following
     keyframes = [k.model_copy(update={"room": name}) for k, name in zip(script.keyframes, rooms, strict=True)]
     return script.model_copy(update={"keyframes": tuple(keyframes)})
+
+
+def _stays(keyframe: PlannedKeyframe) -> bool:
+    """Whether it is done on the spot, wherever the body is: who stands still, waves or weeps."""
+    on_spot = keyframe.on_floor and keyframe.skill is Skill.LOCO
+    return on_spot and walk_style(Emotion.NEUTRAL, look_of(keyframe.caption)).stays > 0
 
 
 def usual_furniture(layouts: Sequence[Layout], room_type: str) -> frozenset[str]:

@@ -37,6 +37,8 @@ _MOST_OF_ONE: Final = 2
 MAX_TITLE_WORDS: Final = 6
 """Of one made for a script that has none."""
 _PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
+_AT_TABLES: Final = {"dining chair": "at the table", "office chair": "at the desk"}
+"""How one says that somebody sits on a seat that stands at a table."""
 Rows = Sequence[tuple[int, PlannedKeyframe]]
 
 
@@ -201,7 +203,8 @@ class _Teller:
         if known or form_of(verb.told.lower()) != "past":
             return
         sits = first.skill is Skill.SITDOWN
-        down = f"{'sat' if sits else 'lay'} down {self.wording.on(index, first)}"
+        on = self.wording.on(index, first)
+        down = f"{'sat' if sits else 'lay'} down {_AT_TABLES.get(on.partition(' the ')[2], on)}"
         follows = "".join(token.text for token in self.told.tokens[stretch.end :])
         joint = "," if re.match(r",?\s*(?:and|then)\b|,", follows) else " and"  # "sat down, ate and went to bed"
         verb.before += f"{('sat up' if sits else 'lay back') if there else down}{joint} "

@@ -155,6 +155,8 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     if word in story_words().helpers and word not in _TOLD_IN_PAST:
         after = before in SUBJECTS or (head and word in ("have", "do") and before)
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
+    if word == "mean" and before in _PLURAL and follows == "to":
+        return "meant"
     form, base = form_of(word), word in bases(word) and not (is_adjective(word) or _is_noun(word, before))
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":

@@ -184,7 +184,8 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
     emotion = None if alone and not sure else emotion  # "finds nobody there, only a parcel"
     if emotion is None and not who and _is_frightened(clause):
         emotion = Emotion.STRESSED
-    theirs = is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
+    hums = bool(who) and clause.verb in (*theme_words()["sounds"], "hum", "sing", "whistle", "purr")
+    theirs = hums or is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
     if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))

@@ -34,6 +34,8 @@ _SEVERAL: Final = frozenset(("couple", "family", "pair", "people", "police", "te
 FLOATING: Final = frozenset(("all", "both", "each"))
 """Words between several people and their verb."""
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
+_SHORTEST: Final = 3
+"""Letters of what is no plural: "as"."""
 _FEWEST_SAYING: Final = 2
 """Words of a name and what its bearer does."""
 NAMING: Final = frozenset(("named", "called", "nicknamed"))
@@ -144,7 +146,7 @@ def has_verb(text: str) -> bool:
 def is_plural(word: str) -> bool:
     """Whether a word may be the plural of a noun, or mean several people."""
     nouns = kinds_of(word).get("NOUN", ())
-    return any(noun != word for noun in nouns) or word in _SEVERAL
+    return (len(word) > _SHORTEST and any(noun != word for noun in nouns)) or word in _SEVERAL
 
 
 def is_adverb(word: str) -> bool:

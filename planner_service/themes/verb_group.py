@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from planner_service.themes.lexicon import grammar, participle, verb_of
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import Token, verb_place
 
 _LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
@@ -96,6 +97,9 @@ def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str,
         step = 3 if len(near) > 2 and near[2] == "to" else 2
     elif ahead in ("to", "from") and base in grammar().refusals | (_wishes(words[:at]) if ahead == "to" else set()):
         step = 2
+    elif base == "skip" and {*near[1:]} & theme_words()["skipped"]:  # "skips breakfast", not "skips across the room"
+        group.denied = True
+        return 0
     elif base in ("stop", "help") and ahead.endswith("ing") and group.denied:  # who cannot stop doing it does it
         group.denied = group.unable = False
         return 1

@@ -1,0 +1,27 @@
+"""How long a pose is held where the theme says that it lasts: "waits", "stares at it for a long while"."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Final
+
+from motion_backend.motion import Action, Skill
+
+LONGER: Final = 3.0
+"""Seconds more for what lasts."""
+_LASTS: Final = re.compile(
+    r"\bwait(?:s|ed|ing)?\b(?! (?:on|no|a moment))|\bfor (?:a |an )?(?:very |quite )?(?:long (?:while|time|moment)|while|hour)\b"
+    r"|\bfor (?:hours|ages|minutes|(?:two|three|four|five|ten|twenty|thirty) (?:minutes|hours)|the rest of)\b"
+    r"|\ball (?:day|night|evening|morning|afternoon)\b|\buntil\b|\bmotionless\b|\bwithout moving\b|\bforever\b",
+    re.IGNORECASE,
+)
+
+
+def lingering(action: Action, said: str) -> Action:
+    """The action, held longer where the theme's words for it say that it lasts; a walk or a touch is not."""
+    if not _LASTS.search(said):
+        return action
+    if action.skill in (Skill.SITDOWN, Skill.LIEDOWN) or (action.skill is Skill.LOCO and action.goal is None):
+        return replace(action, hold=action.hold + LONGER)
+    return replace(action, stands=action.stands + LONGER) if action.stands else action
