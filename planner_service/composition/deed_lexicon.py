@@ -78,6 +78,8 @@ _PLACED: Final = frozenset(("in", "on", "under", "behind", "beneath", "below", "
 """Words that each place of a list begins with."""
 _INSIDE: Final = re.compile(r"\b(?:crawl|creep|crept|climb|slip|squeez)\w* (?:back )?(?:inside|in)(?: with\b|$)")
 """Into what was named before."""
+_ON: Final = re.compile(r"\b(?:on|onto|in|into|at|over|by) ((?:\w+ ?){1,4})")
+"""Where somebody rests: not the cushion that is hugged."""
 _ON_IT: Final = re.compile(r"\b(?:on|onto) it\b")
 _ALONE: Final = frozenset(("picture", "clock"))
 """Pieces that, as lamps, are themselves what something is done to."""
@@ -225,7 +227,7 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     )
     if skill is Skill.LIEDOWN and seated and not (_FLOOR.search(clause.text) or _UNDER.search(clause.text)):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
-    on = [*pieces_in(clause.text), *(["floor"] if _FLOOR.search(clause.text) else [])]
+    on = [*(piece for place in _ON.findall(clause.text) for piece in pieces_in(place)), *(["floor"] if _FLOOR.search(clause.text) else [])]
     if need is None and (rested := _at_rest(found, on)):
         return rested
     if need is None:

@@ -269,6 +269,8 @@ class DeedReader:
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)
         if likely is None or not keyframes or deed.row.stands:
             return by_table
+        if by_table and deed.skill is Skill.TOUCH and opening_of(deed.skill, clause.text):
+            return True  # a hand at the door opens it, whatever else may show it
         rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
         if by_table and rests and (RESTS.match(clause.text) or (deed.named and clause.verb in _RESTING)):
             return True  # whatever hands do there

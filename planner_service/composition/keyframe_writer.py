@@ -59,8 +59,9 @@ from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.opening_words import Kind, opening_of
-from planner_service.themes.protagonist import names_somebody
+from planner_service.themes.protagonist import head_of, names_somebody
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
 
 NOT_ACTED: Final = {
@@ -82,6 +83,8 @@ _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside"
 _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
+_RETURNS: Final = ("go", "return", "get", "come", "sit", "walk", "settle", "sink", "crawl", "climb", "head")
+_MAT: Final = re.compile(r"\b(?:mat|rug|carpet|floor)\b")
 _DESK: Final = re.compile(r"writing|typing")
 """Captions that want a table under the hands."""
 _TO_BED: Final = re.compile(r"\bto bed\b")
@@ -202,6 +205,8 @@ class KeyframeWriter:
     def _done_before(self, index: int, beats: Sequence[ReadBeat]) -> Deed | None:
         """The last deed of the same verb, where it was done, of who does it again and names nothing; None of others."""
         clause = beats[index].clause
+        if "back" in clause.lemmas[:3] and clause.verb in _RETURNS:
+            return self._returned_to(clause)
         told = clause.lemmas[: clause.lemmas.index("again")] if "again" in clause.lemmas else ()
         if not told or object_of(replace(clause, lemmas=told)) not in ("", "it"):
             return None
@@ -211,6 +216,19 @@ class KeyframeWriter:
             return None
         spot = next((one.furniture for one in reversed(self.keyframes) if one.beat == same), "")
         return replace(deed, pieces=(spot,), named=True) if spot else deed
+
+    def _returned_to(self, clause: Clause) -> Deed | None:
+        """What was done last at the seat, bed or floor that somebody goes back to: "goes back to his desk", "sits back
+        down"; None where that was nowhere."""
+        meant = pieces_in(clause.text)
+        seats = {*meant, *(seat for piece in meant for seat in deed_table().seats_at.get(piece, ()))}
+        floor = bool(_MAT.search(clause.text))
+        for one in reversed(self.keyframes):
+            there = one.furniture in seats or (floor and one.on_floor) or (clause.verb == "sit" and not seats)
+            deed = self.deeds.get(one.beat) if one.beat is not None else None
+            if one.skill in (Skill.SITDOWN, Skill.LIEDOWN) and there and deed is not None and deed.skill is one.skill:
+                return replace(deed, pieces=(one.furniture,), named=True)
+        return None
 
     def _within(self, read: ReadBeat) -> DeedRow | None:
         """The row of what is part of what is seen already: nobody goes anywhere to hang up, or close a book."""
@@ -276,11 +294,15 @@ class KeyframeWriter:
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
         if self.body.resting is not None and only_stands_for(self.body.resting, read, deed, self.reader):
-            self.body.show(index)  # nobody gets up for what would show no more
+            self.why[index] = UNSHOWN  # nobody gets up for what would show no more
             return
         if deed.skill is Skill.TOUCH and self._is_on_body(index, read):
             return
         resting = self.body.resting
+        limbs = lemma_of(head_of(read.clause.subject)) in theme_words()["body"]
+        if limbs and self.keyframes and resting is None and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN):
+            self.body.show(index)  # "leans against the wall, arms crossed"
+            return
         match deed.skill:
             case Skill.STANDUP if self.keyframes and resting is None and is_beside(read):
                 self.body.show(index)  # "eats, standing up"

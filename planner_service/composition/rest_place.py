@@ -15,6 +15,7 @@ from planner_service.composition.deed_reader import HARDLY, HARDLY_HERE, DeedRea
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.opening_words import opening_of
 from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
 
@@ -70,7 +71,8 @@ def is_sure(read: ReadBeat, deed: Deed) -> bool:
     """Whether it is done however unlikely it looks: to get up for a thing that is kept somewhere, to go, to sleep."""
     fetches = deed.skill is Skill.TOUCH and deed.row.things and bool(deed.row.captions) and not deed.row.stands
     goes = deed.skill is Skill.LOCO and read.clause.verb in _GOES
-    return fetches or goes or (deed.skill in (Skill.SITDOWN, Skill.LIEDOWN) and read.clause.verb in _SLEEPS)
+    opens = deed.skill is Skill.TOUCH and opening_of(deed.skill, read.text) is not None
+    return fetches or goes or opens or (deed.skill in (Skill.SITDOWN, Skill.LIEDOWN) and read.clause.verb in _SLEEPS)
 
 
 def eats(deed: Deed) -> bool:
@@ -106,12 +108,13 @@ def on_seat_ahead(
     """Who sits for it does so where the theme has them sit next: nobody changes seats for what is told before."""
     if deed.named or deed.skill not in (Skill.SITDOWN, Skill.LIEDOWN):
         return deed
-    told = [(one, reader.deed(one.clause)) for one in nexts[:AHEAD] if one.room in (None, read.room)]
+    told = [(one, reader.deed(one.clause)) for one in nexts[:AHEAD] if read.room is None or one.room in (None, read.room)]
     for one, then in told:
         if then is None or not then.named or then.skill is not Skill.SITDOWN or not places.has(then.pieces[0]):
             continue
         if one is nexts[0] and is_beside(one):  # "collapses | giggling on the rug"
-            return then
+            sits = deed.skill is Skill.SITDOWN and bool(deed.row.captions)  # "eats | sitting on the floor"
+            return replace(deed, pieces=then.pieces, named=True) if sits else then
         if deed.skill is Skill.SITDOWN and affords(then.pieces[0], "sit") and then.pieces[0] != "floor":
             return replace(deed, pieces=then.pieces, named=True)
     return deed

@@ -13,7 +13,8 @@ from planner_service.scripts.script_words import affords
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.sentence_parser import Clause
-from planner_service.themes.things import things
+from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs.furniture import categories_of
 
@@ -38,6 +39,21 @@ _OFTEN: Final = re.compile(
 )
 """How often, of what is seen once."""
 _EACH: Final = re.compile(r"\b(?:each|every|all)(?= (?:of )?(?:the |his |her |their |my )?(?P<what>[\w'-]+))", re.IGNORECASE)
+_OBJECT: Final = re.compile(
+    r"(?:^|\b(?P<with>with ))(?:(?:up|down|out|away|off|on|together) )?"
+    r"(?P<what>(?:the|an?|his|her|their|my|its|some|every|two|three|four) (?:[\w'-]+ ){0,2}?[\w'-]+)"
+    r"(?= (?:in|on|at|to|into|onto|from|for|with|under|behind|off|out|up|down|away|back|over|again|and|while|until|\w+ly)\b"
+    r"|[,.;]|$)",
+    re.IGNORECASE,
+)
+"""What a deed is done to, or with."""
+_BARE: Final = re.compile(r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying)\b")
+"""Captions in which nothing is in the hands; but a box."""
+_SOUGHT: Final = frozenset(("look", "search", "hunt", "check", "miss", "seek", "inspect", "examine", "touch", "ring"))
+"""Verbs of what need not be there."""
+_NOT_HELD: Final = frozenset(("box", "parcel", "package", "carton", "crate", "present", "gift", "music", "radio", "song", "light", "tap",
+                              "faucet", "alarm"))  # fmt: skip
+"""What is carried as a box, or is heard."""
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
 """Of captions that do it several times."""
 
@@ -54,15 +70,34 @@ def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
 
 
 def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, ...]:
-    """The same of the keyframes that show it, with places where the body is not, and how often it does what it does
-    once."""
+    """The same of the keyframes that show it, with things that no hand is seen with, places where the body is not, and
+    how often it does what it does once."""
     besides = unshown(clause, {one.piece[0] for one in keyframes})
-    more = (*_places(clause, keyframes), *_counts(clause, keyframes))
+    more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes))
     return (*besides, *(text for text in more if not any(text in one for one in besides)))
 
 
 def _words(text: str) -> list[str]:
     return [token.low for token in tokens_of(text)]
+
+
+def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
+    """What hands do it to, and with what, of things that are kept somewhere: a hand that is laid there has none of
+    them, and what is carried is a box."""
+    done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor]
+    bare = bool(done) and all(_BARE.search(one.caption) for one in done)
+    if not bare or clause.verb in _SOUGHT or clause.quotes:
+        return []
+    told = _OBJECT.finditer(clause.text.partition(" ")[2])
+    found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]
+    return found[:1]
+
+
+def _is_carried(what: str) -> bool:
+    """Whether words name a thing that would be seen in a hand; no furniture, nor what belongs to a house."""
+    noun = lemma_of(_words(what)[-1])
+    fixed = noun in (*things_called("fixture"), *theme_words()["body"]) or things().get(noun, ())[:1] == ("plant",)
+    return noun in things() and not (fixed or pieces_in(what)) and noun not in _NOT_HELD
 
 
 def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
