@@ -103,12 +103,15 @@ def _leads(body: Kinematics, action: Action, span: Span) -> bool:
 def holds(body: Kinematics, actions: Sequence[Action], spans: Sequence[Span]) -> NDArray[np.bool_]:
     """Frames that an action means to stay in. (T,).
 
-    A contact from where it is first reached to where it is last held, staying on the spot, and the end of the story.
+    A contact from where it is first reached to where it is last held, staying on the spot or where a walk has led, and
+    the end of the story.
     """
     found = np.zeros(len(body.motion), dtype=bool)
     for action, (start, stop) in zip(actions, spans, strict=True):
         if action.skill is Skill.LOCO and action.goal is None:
             found[start:stop] = True
+        elif action.skill is Skill.LOCO and action.stands:
+            found[max(start, stop - round(action.stands * body.motion.fps)) : stop] = True
         elif action.spot is not None and action.skill not in RISES:
             held = np.flatnonzero(_at_its_place(body, action, (start, stop)))
             if len(held):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
 from itertools import pairwise
@@ -14,7 +14,6 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.script import EMOTIONS
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
-from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
@@ -78,7 +77,7 @@ _PLACED: Final = frozenset(("in", "on", "under", "behind", "beneath", "below", "
 """Words that each place of a list begins with."""
 _INSIDE: Final = re.compile(r"\b(?:crawl|creep|crept|climb|slip|squeez)\w* (?:back )?(?:inside|in)(?: with\b|$)")
 """Into what was named before."""
-_ON: Final = re.compile(r"\b(?:on|onto|in|into|at|over|by) ((?:\w+ ?){1,4})")
+_ON: Final = re.compile(r"\b(?:on|onto|in|into|at|over|by) (?=((?:\w+ ?){1,4}))")
 """Where somebody rests: not the cushion that is hugged."""
 _ON_IT: Final = re.compile(r"\b(?:on|onto) it\b")
 _ALONE: Final = frozenset(("picture", "clock"))
@@ -227,7 +226,10 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     )
     if skill is Skill.LIEDOWN and seated and not (_FLOOR.search(clause.text) or _UNDER.search(clause.text)):
         skill, need = Skill.SITDOWN, "sit"  # "collapses into the armchair"
-    on = [*(piece for place in _ON.findall(clause.text) for piece in pieces_in(place)), *(["floor"] if _FLOOR.search(clause.text) else [])]
+    on = [
+        *(piece for place in _ON.findall(clause.text) for piece in pieces_in(place)),
+        *(["floor"] if _FLOOR.search(clause.text) else []),
+    ]
     if need is None and (rested := _at_rest(found, on)):
         return rested
     if need is None:

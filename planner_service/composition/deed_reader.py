@@ -32,9 +32,9 @@ from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.opening_words import opening_of
 from planner_service.themes.protagonist import head_of, is_person
-from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
@@ -114,7 +114,21 @@ _AT_TABLES: Final = ("dining chair", "chair", "office chair")
 _RESTING: Final = ("sit", "lie", "perch", "sink", "settle", "flop", "slump", "collapse")
 """Verbs of which who sits or lies there is all that is told."""
 _NOT_DRAWN: Final = grammar().prepositions | frozenset(
-    ("up", "near", "back", "out", "aside", "apart", "close", "closer", "away", "breath", "bath", "curtain", "conclusion")
+    (
+        "up",
+        "near",
+        "back",
+        "out",
+        "aside",
+        "apart",
+        "close",
+        "closer",
+        "away",
+        "breath",
+        "bath",
+        "curtain",
+        "conclusion",
+    )
 )
 _SMILES: Final = ("smile", "grin", "beam", "smirk")
 _NOBODY: Final = frozenset(("no", "nobody", "nothing", "none", "neither", "few", "hardly"))

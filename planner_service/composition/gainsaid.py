@@ -47,7 +47,8 @@ def _is_another_place(clause: Clause, keyframe: Keyframe) -> bool:
     hidden = [(piece, how) for how, place in _HIDDEN.findall(clause.text) for piece in pieces_in(place)]
     covered = lain and any(word in things_called("bedding") for word in clause.lemmas)  # "under the bed covers"
     covered = covered or (_CROUCHED in keyframe.caption and all(how != "behind" for _, how in hidden))
-    if keyframe.skill is Skill.TOUCH and clause.verb not in theme_words()["entering_verbs"]:
+    low = "low" in keyframe.caption.lower()
+    if keyframe.skill is Skill.TOUCH and low and clause.verb not in theme_words()["entering_verbs"]:
         hidden = []  # hands reach under the sofa beside it
     if any(not (seated and how == "behind" and not affords(piece, "sit")) for piece, how in hidden) and not covered:
         return True  # but one sits behind a desk

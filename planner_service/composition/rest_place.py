@@ -108,7 +108,9 @@ def on_seat_ahead(
     """Who sits for it does so where the theme has them sit next: nobody changes seats for what is told before."""
     if deed.named or deed.skill not in (Skill.SITDOWN, Skill.LIEDOWN):
         return deed
-    told = [(one, reader.deed(one.clause)) for one in nexts[:AHEAD] if read.room is None or one.room in (None, read.room)]
+    told = [
+        (one, reader.deed(one.clause)) for one in nexts[:AHEAD] if read.room is None or one.room in (None, read.room)
+    ]
     for one, then in told:
         if then is None or not then.named or then.skill is not Skill.SITDOWN or not places.has(then.pieces[0]):
             continue

@@ -25,11 +25,6 @@ _PLACE: Final = re.compile(
     re.IGNORECASE,
 )
 """Where a deed is told to be done."""
-_PARTICLES: Final = frozenset(
-    ("turn", "switch", "put", "flick", "click", "take", "pull", "try", "have", "throw", "slip", "start", "plug", "look",
-     "work", "hand", "leaf", "flip", "page", "browse", "call", "check", "come", "sleep", "play", "go", "think", "count", "live")
-)  # fmt: skip
-"""Verbs after which such a word is theirs, and no place: "puts on the kettle", "looks over the bill"."""
 _ON: Final = frozenset(("on top of", "on", "onto", "upon"))
 _HIDDEN: Final = frozenset(("under", "underneath", "beneath", "behind", "in", "into", "inside", "through"))
 _OFTEN: Final = re.compile(
@@ -38,22 +33,20 @@ _OFTEN: Final = re.compile(
     re.IGNORECASE,
 )
 """How often, of what is seen once."""
-_EACH: Final = re.compile(r"\b(?:each|every|all)(?= (?:of )?(?:the |his |her |their |my )?(?P<what>[\w'-]+))", re.IGNORECASE)
+_EACH: Final = re.compile(
+    r"\b(?:each|every|all)(?= (?:of )?(?:the |his |her |their |my )?(?P<what>[\w'-]+))", re.IGNORECASE
+)
 _OBJECT: Final = re.compile(
     r"(?:^|\b(?P<with>with ))(?:(?:up|down|out|away|off|on|together) )?"
     r"(?P<what>(?:the|an?|his|her|their|my|its|some|every|two|three|four) (?:[\w'-]+ ){0,2}?[\w'-]+)"
-    r"(?= (?:in|on|at|to|into|onto|from|for|with|under|behind|off|out|up|down|away|back|over|again|and|while|until|\w+ly)\b"
+    r"(?= (?:in|on|at|to|into|onto|from|for|with|under|behind|off|out|up|down|away|back|over|again|and|while|until"
+    r"|\w+ly)\b"
     r"|[,.;]|$)",
     re.IGNORECASE,
 )
 """What a deed is done to, or with."""
 _BARE: Final = re.compile(r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying)\b")
 """Captions in which nothing is in the hands; but a box."""
-_SOUGHT: Final = frozenset(("look", "search", "hunt", "check", "miss", "seek", "inspect", "examine", "touch", "ring"))
-"""Verbs of what need not be there."""
-_NOT_HELD: Final = frozenset(("box", "parcel", "package", "carton", "crate", "present", "gift", "music", "radio", "song", "light", "tap",
-                              "faucet", "alarm"))  # fmt: skip
-"""What is carried as a box, or is heard."""
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
 """Of captions that do it several times."""
 
@@ -65,7 +58,8 @@ def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
     known = frozenset(re.findall(r"[a-z]{4,}", " ".join(row.says)) if row else ()) - grammar().prepositions
     return tuple(
         text for text in details_of(clause)
-        if known.isdisjoint(map(lemma_of, _words(text))) and not (pieces_in(text) and set(used).issuperset(pieces_in(text)))
+        if known.isdisjoint(map(lemma_of, _words(text)))
+        and not (pieces_in(text) and set(used).issuperset(pieces_in(text)))
     )  # fmt: skip
 
 
@@ -86,7 +80,7 @@ def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     them, and what is carried is a box."""
     done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor]
     bare = bool(done) and all(_BARE.search(one.caption) for one in done)
-    if not bare or clause.verb in _SOUGHT or clause.quotes:
+    if not bare or clause.verb in theme_words()["sought_verbs"] or clause.quotes:
         return []
     told = _OBJECT.finditer(clause.text.partition(" ")[2])
     found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]
@@ -97,7 +91,7 @@ def _is_carried(what: str) -> bool:
     """Whether words name a thing that would be seen in a hand; no furniture, nor what belongs to a house."""
     noun = lemma_of(_words(what)[-1])
     fixed = noun in (*things_called("fixture"), *theme_words()["body"]) or things().get(noun, ())[:1] == ("plant",)
-    return noun in things() and not (fixed or pieces_in(what)) and noun not in _NOT_HELD
+    return noun in things() and not (fixed or pieces_in(what)) and noun not in theme_words()["not_held"]
 
 
 def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
@@ -107,7 +101,7 @@ def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     for place in _PLACE.finditer(clause.text):
         how, what = place["how"].lower(), place["what"]
         beside_verb = clause.text[: place.start()].strip() == first
-        if beside_verb and clause.verb in _PARTICLES:
+        if beside_verb and clause.verb in theme_words()["particle_verbs"]:
             continue
         if _is_place(what) and not any(_is_at(one, how, what) for one in keyframes):
             found.append(place[0])
@@ -131,7 +125,9 @@ def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
         return there and how not in _ON | _HIDDEN
     if keyframe.skill is Skill.TOUCH:  # what hands do to a thing is seen where it is kept
         return there or not pieces
-    under = how in _HIDDEN and bool(pieces) and not any(affords(piece, "sit") or affords(piece, "lie") for piece in pieces)
+    under = (
+        how in _HIDDEN and bool(pieces) and not any(affords(piece, "sit") or affords(piece, "lie") for piece in pieces)
+    )
     return there and (how == "behind" or not under)
 
 

@@ -32,7 +32,7 @@ from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
-from planner_service.themes.opening_words import Kind, comes_in, opening_of
+from planner_service.themes.opening_words import Kind, comes_in, goes_to_window, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
 from scene_graphs.errors import UserError
 from scene_graphs.furniture import display_name, has_front
@@ -170,6 +170,7 @@ def act(
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         words_of_it = f"{keyframe.caption}; {said[index] if said else ''}"
         stage.openings.append(opening_of(keyframe.skill, words_of_it))
+        stage.to_window |= {index} if goes_to_window(words_of_it) else set()
         stage.seated_for.append(busy[index] or keyframe.caption)
         before = keyframes[index - 1] if index else None
         if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
@@ -204,6 +205,8 @@ class _Stage:
         """What it sits or lies on still."""
         self.openings: list[Kind | None] = []
         """The window or door that each keyframe so far asks for."""
+        self.to_window: set[int] = set()
+        """Keyframes whose words lead to a window."""
         self.seated_for: list[str] = []
         """The caption that a seat is chosen for: what needs a table, of all that is done on it."""
         self.elsewhere: set[int] = set()
@@ -426,7 +429,7 @@ class _Stage:
         """A walk with its goal; who stands still or waves has none."""
         wanders, at = place.object_id is None, leg.at
         kind = self.openings[action.keyframe] if wanders else None
-        if kind is not None and (kind == "door" or stays(action.caption)):
+        if kind is not None and (kind == "door" or stays(action.caption) or action.keyframe in self.to_window):
             return self._before(kind, action, place, at)
         if wanders and action.goal is not None and (following is None or following.object_id != "floor"):
             return action  # where it wandered before is as good as anywhere

@@ -11,7 +11,8 @@ from motion_backend.motion import Action, Skill
 LONGER: Final = 3.0
 """Seconds more for what lasts."""
 _LASTS: Final = re.compile(
-    r"\bwait(?:s|ed|ing)?\b(?! (?:on|no|a moment))|\bfor (?:a |an )?(?:very |quite )?(?:long (?:while|time|moment)|while|hour)\b"
+    r"\bwait(?:s|ed|ing)?\b(?! (?:on|no|a moment))"
+    r"|\bfor (?:a |an )?(?:very |quite )?(?:long (?:while|time|moment)|while|hour)\b"
     r"|\bfor (?:hours|ages|minutes|(?:two|three|four|five|ten|twenty|thirty) (?:minutes|hours)|the rest of)\b"
     r"|\ball (?:day|night|evening|morning|afternoon)\b|\buntil\b|\bmotionless\b|\bwithout moving\b|\bforever\b",
     re.IGNORECASE,

@@ -11,6 +11,7 @@ from pydantic_core import PydanticKnownError
 
 from motion_backend.emotion_words import emotion_of
 from motion_backend.motion import Emotion, Skill, skills_named
+from planner_service.themes.opening_words import spelt_out
 
 EMOTIONS: Final[tuple[Emotion, ...]] = tuple(Emotion)
 """Neutral and the eight emotions or styles of SIMS 4.1."""

@@ -37,6 +37,9 @@ _OPENS: Final = re.compile(
 _TO_THE_DOOR: Final = re.compile(
     rf"\b(?:to|at|by|near|behind|towards?|for) {_OF_A_HOUSE}(?:door|doorway|entrance)(?!\w| of)", re.IGNORECASE
 )
+_TO_THE_WINDOW: Final = re.compile(
+    r"\b(?:to|towards?|over to) (?:the|a|an|his|her|their|my|its) (?:\w+ )?windows?(?!\w| (?:sill|seat))", re.IGNORECASE
+)
 _COMES_IN: Final = re.compile(
     r"\b(?:com|came|get|got|arriv|return|walk|step|storm|burst|stumbl|stagger|rush|hurr|bound|trudg|stomp|sneak|slip)\w*"
     r"\b(?:(?!\b(?:and|then|to)\b)[^,;.])*?\b(?:home|indoors|through the (?:front )?door|from (?:work|school)"
@@ -83,6 +86,11 @@ def opening_of(skill: Skill, said: str) -> Kind | None:
     if skill is Skill.LOCO:
         return "window" if _LOOKS.search(said) else "door" if _TO_THE_DOOR.search(said) else None
     return None
+
+
+def goes_to_window(said: str) -> bool:
+    """Whether a walk leads to a window, by the theme's words: "carries it to the window"."""
+    return bool(_TO_THE_WINDOW.search(said))
 
 
 def comes_in(said: str) -> bool:

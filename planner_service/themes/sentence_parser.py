@@ -384,7 +384,9 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
 
 def _is_beside(word: str, before: str) -> bool:
     """Whether a gerund is a second deed beside a posture or way: "lies there crying", not "the dining table"."""
-    if not (word.endswith("ing") and verb_of(word) not in ("", word)) or (is_adjective(before) and before not in _PARTICLES):
+    if not (word.endswith("ing") and verb_of(word) not in ("", word)) or (
+        is_adjective(before) and before not in _PARTICLES
+    ):
         return False
     return before not in (grammar().marks - {"to"}) | (grammar().prepositions - _PARTICLES)
 

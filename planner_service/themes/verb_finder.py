@@ -251,7 +251,9 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = _goes_on(after) or after in (",", "and")
         goes_on = after in grammar().marks or is_noun(after)
-        acts = not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks | grammar().numbers and at <= 2)
+        acts = (
+            not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks | grammar().numbers and at <= 2)
+        )
         return (past(base) == base and named) or (is_plural(before) and acts)
     return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
 

@@ -61,6 +61,7 @@ def test_a_film_with_subtitles_becomes_short_scripts_that_stories_can_use(
     assert list((service.folder / "uploads").iterdir()) == []
 
 
+@pytest.mark.sweep
 def test_a_worker_that_is_killed_goes_on_and_asks_about_no_scene_twice(film: bytes, tmp_path: Path) -> None:
     """It is killed while the model still looks at the second scene, when the first one is read and stored."""
     killed: list[int] = []

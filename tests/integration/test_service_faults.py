@@ -140,6 +140,7 @@ def test_postgresql_may_go_away_and_come_back(
         assert finished(client, post(client, 1).json()["id"])["state"] == "succeeded"
 
 
+@pytest.mark.sweep
 def test_a_worker_keeps_its_name_when_its_connections_are_cut(fragile_postgres: RunningService) -> None:
     postgres_url = fragile_postgres.environment["SIMS_DATABASE_URL"]
     with fragile_postgres.client() as client:
@@ -242,6 +243,7 @@ def test_two_workers_cannot_have_one_name(service: RunningService) -> None:
     assert "running already" in second.stderr
 
 
+@pytest.mark.sweep
 def test_another_worker_takes_over_from_one_that_will_not_come_back(tmp_path: Path) -> None:
     with RunningService(tmp_path, workers=0) as service, service.client() as client:
         environment = service.environment | {"SIMS_DATA_DIR": str(tmp_path)}

@@ -19,7 +19,7 @@ from running import ENDED, LOOK, SHORT, RunningService, begun, finished
 from motion_backend.formats.npz import read_raw
 
 pytestmark = pytest.mark.service
-STORIES = int(os.environ.get("SIMS_TEST_STORIES", "6"))
+STORIES = int(os.environ.get("SIMS_TEST_STORIES", "4"))
 """Stories posted at once, on each database; every film is asked for twice."""
 SEVERAL = "He wakes up, reads at the desk, argues on the phone, eats at the table and falls asleep in bed."
 LONG = (
@@ -192,6 +192,7 @@ def test_stories_are_listed_newest_first_page_after_page(client: httpx.Client) -
     assert all(item["state"] in ENDED for item in pages)
 
 
+@pytest.mark.sweep
 def test_a_service_stops_gracefully_and_goes_on_when_it_starts_again(running: RunningService) -> None:
     with running.client() as client:
         story = post(client, theme=SEVERAL).json()

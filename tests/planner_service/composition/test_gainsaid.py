@@ -13,6 +13,7 @@ from planner_service.themes.sentence_parser import clauses_of_text
 from scene_graphs.data_tables import read_table
 
 HAND = Keyframe(skill=Skill.TOUCH, caption="touch medium height", furniture="sofa")
+LOW = Keyframe(skill=Skill.TOUCH, caption="touch low height", furniture="sofa")
 CURLED = Keyframe(skill=Skill.LIEDOWN, caption="curled up on the left side, knees drawn up", furniture="bed")
 SEATED = Keyframe(skill=Skill.SITDOWN, caption="sitting still", furniture="chair")
 READING = Keyframe(skill=Skill.SITDOWN, caption="reading, book held in both hands", furniture="chair")
@@ -34,6 +35,8 @@ def test_the_only_captions_of_a_deed_are_parts_of_captions_that_there_are() -> N
         ("She crawls into bed.", CURLED, False),
         ("She crawls inside the wardrobe.", HAND, True),
         ("She checks under the sofa.", HAND, True),
+        ("She checks under the sofa.", LOW, False),
+        ("She hides under the sofa.", LOW, True),
         ("She checks the sofa.", HAND, False),
         ("She jumps onto a chair.", SEATED, True),
         ("She sits on a chair.", SEATED, False),

@@ -63,6 +63,38 @@ def test_what_is_only_heard_is_done_by_nobody(heard: str) -> None:
     assert {one.beat for one in script.keyframes} == {len(script.beats) - 1}
 
 
+@pytest.mark.parametrize(
+    ("theme", "back"),
+    [
+        ("He types at the desk. He gets up. He paces. He sits back down.", "sits back down"),
+        ("She does yoga on the carpet. She opens the door. She goes back to her mat.", "goes back to her mat"),
+        ("He reads in bed. He gets up. He drinks some water. He goes back to bed.", "goes back to bed"),
+    ],
+)
+def test_who_goes_back_rests_where_they_did(theme: str, back: str) -> None:
+    script = planned(theme)
+    first = next(one for one in script.keyframes if one.skill in (Skill.SITDOWN, Skill.LIEDOWN))
+    assert (shown(script, back).skill, shown(script, back).furniture) == (first.skill, first.furniture)
+
+
+def test_what_is_done_again_is_done_where_it_was() -> None:
+    script = planned("She knocks on the bathroom door. She waits. She knocks again.")
+    touched = [one.furniture for one in script.keyframes if one.skill is Skill.TOUCH]
+    assert len(touched) == 2 and len({*touched}) == 1
+
+
+@pytest.mark.parametrize("meal", ["breakfast", "lunch", "class"])
+def test_who_skips_a_meal_does_not_eat(meal: str) -> None:
+    script = planned(f"He skips {meal}. He sits down.")
+    assert script.beats[0].kind == "undone"
+    assert not any("eating" in one.caption for one in script.keyframes)
+
+
+def test_a_thing_is_where_it_is_told_to_lie() -> None:
+    script = planned("The letter lies on the coffee table. She opens it.")
+    assert shown(script, "opens it").furniture == "coffee table"
+
+
 def shown(script: LongScript, text: str) -> PlannedKeyframe:
     """The last keyframe of the beat of such words."""
     beat = next(index for index, one in enumerate(script.beats) if one.text == text)

@@ -329,3 +329,19 @@ def test_a_name_that_a_noun_is_given_belongs_to_who_does_it(text: str, subject: 
 )
 def test_who_tells_of_a_person_where_one_is_named_before_it(text: str, who: str) -> None:
     assert clauses_of_text(text)[-1].doer == who
+
+
+@for_each(
+    ("text", "clauses"),
+    [
+        ("Ruth waits for the phone to ring.", ["waits for the phone to ring"]),
+        ("Two unread letters lie on the doormat.", ["lie on the doormat"]),
+        (
+            "The twins build a tent from blankets and chairs and play cards.",
+            ["build a tent from blankets and chairs", "play cards"],
+        ),
+        ("Too hot to sleep, Ines opens the window.", ["Too hot to sleep", "opens the window"]),
+    ],
+)
+def test_nouns_and_purposes_are_no_deeds_of_their_own(text: str, clauses: list[str]) -> None:
+    assert [one.text for one in clauses_of_text(text)] == clauses

@@ -1,0 +1,50 @@
+"""What is acted and not all of it seen says what is not: things, places, how often."""
+
+from __future__ import annotations
+
+from for_each import for_each
+
+from motion_backend.motion import Skill
+from planner_service.composition.unshown import unseen
+from planner_service.scripts.script import PlannedKeyframe
+from planner_service.themes.sentence_parser import clauses_of_text
+
+
+def keyframe(skill: Skill, caption: str, furniture: str) -> PlannedKeyframe:
+    return PlannedKeyframe(skill=skill, caption=caption, furniture=furniture)
+
+
+HAND = keyframe(Skill.TOUCH, "touch medium height", "wardrobe")
+AT_THE_PLANT = keyframe(Skill.TOUCH, "pouring with the right hand", "plant")
+KNOCKING = keyframe(Skill.TOUCH, "knocking with the right hand", "wardrobe")
+DANCING = keyframe(Skill.LOCO, "dancing steps, arms swinging", "table")
+WRITING = keyframe(Skill.SITDOWN, "writing at the table, right hand moving", "office chair")
+READING = keyframe(Skill.SITDOWN, "reading, book held in both hands", "armchair")
+CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
+
+
+@for_each(
+    ("text", "seen", "left"),
+    [
+        ("She packs a suitcase in a hurry.", HAND, ("a suitcase",)),
+        ("She closes the wardrobe.", HAND, ()),
+        ("She looks for her keys.", HAND, ()),
+        ("He turns the music up.", HAND, ()),
+        ("He pulls out the battery.", HAND, ("the battery",)),
+        ("He waters the plants.", AT_THE_PLANT, ()),
+        ("She carries a spider away.", CARRYING, ("a spider",)),
+        ("She carries a box away.", CARRYING, ()),
+        ("She dances on the table.", DANCING, ("on the table",)),
+        ("He writes her name in the dust on the shelf.", WRITING, ("on the shelf",)),
+        ("He writes at the desk.", WRITING, ()),
+        ("She leafs through a magazine.", READING, ()),
+        ("She reads in the armchair under a blanket.", READING, ("under a blanket",)),
+        ("She checks the wardrobe twice.", HAND, ("twice",)),
+        ("She knocks on the wardrobe twice.", KNOCKING, ()),
+        ("She opens every drawer.", HAND, ("every",)),
+    ],
+)
+def test_what_no_keyframe_shows_of_an_acted_beat_is_said(
+    text: str, seen: PlannedKeyframe, left: tuple[str, ...]
+) -> None:
+    assert unseen(clauses_of_text(text)[0], [seen]) == left
