@@ -131,8 +131,10 @@ _NOT_DRAWN: Final = grammar().prepositions | frozenset(
     )
 )
 _SMILES: Final = ("smile", "grin", "beam", "smirk")
-_NOBODY: Final = frozenset(("no", "nobody", "nothing", "none", "neither", "few", "hardly"))
-"""What is done by these is not done."""
+_NOBODY: Final = frozenset(
+    ("somebody", "someone", "everybody", "everyone", "no", "nobody", "nothing", "none", "neither", "few", "hardly")
+)
+"""What is done by these is not done, or by somebody else."""
 _WHEN: Final = re.compile(
     r"(?<=\w) (?:(?:just|right|soon|shortly|long) )?(?:after|before|during|since) (?:an?|the|his|their|my) .+$"
 )

@@ -23,7 +23,6 @@ from planner_service.composition.deed_lexicon import (
     deed_table,
     listed_places,
     names_things,
-    object_of,
     pieces_in,
     room_of,
     row_of,
@@ -32,6 +31,7 @@ from planner_service.composition.deed_lexicon import (
 )
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
+from planner_service.composition.earlier_deeds import done_before
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import (
@@ -74,6 +74,8 @@ NOT_ACTED: Final = {
 SPOKEN_OF: Final = "it is only spoken of"
 NO_DEED: Final = "it is no deed"
 UNSHOWN: Final = "none of the captions shows it"
+BESIDE: Final = "the body does something else meanwhile, on its feet"
+"""Why what would be done sitting is not, beside that: "irons a shirt while listening to the radio"."""
 HELD: Final = "the hands are empty"
 """Why what is only held, or is in somebody's own clothes, is not acted."""
 EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
@@ -83,8 +85,7 @@ _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside"
 _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
-_RETURNS: Final = ("go", "return", "get", "come", "sit", "walk", "settle", "sink", "crawl", "climb", "head")
-_MAT: Final = re.compile(r"\b(?:mat|rug|carpet|floor)\b")
+_REFUSED: Final = {"sit": Skill.SITDOWN, "lie": Skill.LIEDOWN}
 _DESK: Final = re.compile(r"writing|typing")
 """Captions that want a table under the hands."""
 _TO_BED: Final = re.compile(r"\bto bed\b")
@@ -192,7 +193,7 @@ class KeyframeWriter:
         """What a beat does; who starts again does what was tried last, else done at rest last, else done first, and who
         "knocks again" does it where they did."""
         clause = beats[index].clause
-        if (before := self._done_before(index, beats)) is not None:
+        if (before := done_before(index, beats, self.keyframes, self.deeds)) is not None:
             return before
         again = clause.verb in _AGAIN_VERBS and not _AGAIN.isdisjoint(clause.lemmas)
         if again and not self.deeds:
@@ -201,34 +202,6 @@ class KeyframeWriter:
             done = list(self.deeds.values())
             return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
         return self.reader.deed(clause, self._about)
-
-    def _done_before(self, index: int, beats: Sequence[ReadBeat]) -> Deed | None:
-        """The last deed of the same verb, where it was done, of who does it again and names nothing; None of others."""
-        clause = beats[index].clause
-        if "back" in clause.lemmas[:3] and clause.verb in _RETURNS:
-            return self._returned_to(clause)
-        told = clause.lemmas[: clause.lemmas.index("again")] if "again" in clause.lemmas else ()
-        if not told or object_of(replace(clause, lemmas=told)) not in ("", "it"):
-            return None
-        same = next((at for at in range(index - 1, -1, -1) if beats[at].clause.verb == clause.verb), None)
-        deed = self.deeds.get(same) if same is not None else None
-        if deed is None or deed.skill not in (Skill.TOUCH, Skill.SITDOWN, Skill.LIEDOWN):
-            return None
-        spot = next((one.furniture for one in reversed(self.keyframes) if one.beat == same), "")
-        return replace(deed, pieces=(spot,), named=True) if spot else deed
-
-    def _returned_to(self, clause: Clause) -> Deed | None:
-        """What was done last at the seat, bed or floor that somebody goes back to: "goes back to his desk", "sits back
-        down"; None where that was nowhere."""
-        meant = pieces_in(clause.text)
-        seats = {*meant, *(seat for piece in meant for seat in deed_table().seats_at.get(piece, ()))}
-        floor = bool(_MAT.search(clause.text))
-        for one in reversed(self.keyframes):
-            there = one.furniture in seats or (floor and one.on_floor) or (clause.verb == "sit" and not seats)
-            deed = self.deeds.get(one.beat) if one.beat is not None else None
-            if one.skill in (Skill.SITDOWN, Skill.LIEDOWN) and there and deed is not None and deed.skill is one.skill:
-                return replace(deed, pieces=(one.furniture,), named=True)
-        return None
 
     def _within(self, read: ReadBeat) -> DeedRow | None:
         """The row of what is part of what is seen already: nobody goes anywhere to hang up, or close a book."""
@@ -273,8 +246,9 @@ class KeyframeWriter:
         """Neither sit nor lie for other deeds where the theme says that this is not done."""
         for one in beats:
             deed = self.reader.deed(one.clause) if one.beat.kind == "undone" else None
-            if deed is not None and not deed.row.captions:
-                self._avoided |= {deed.skill} & {Skill.SITDOWN, Skill.LIEDOWN}
+            known = _REFUSED.get(one.clause.verb) if one.beat.kind == "undone" else None
+            skill = deed.skill if deed is not None and not deed.row.captions else known
+            self._avoided |= {skill} & {Skill.SITDOWN, Skill.LIEDOWN} if skill is not None else set()
 
     def _try(self, index: int, read: ReadBeat, deed: Deed, rises_later: bool) -> None:
         """Do it, or leave it out where what would be done only stands for it and is too much for that."""
@@ -302,6 +276,11 @@ class KeyframeWriter:
         limbs = lemma_of(head_of(read.clause.subject)) in theme_words()["body"]
         if limbs and self.keyframes and resting is None and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN):
             self.body.show(index)  # "leans against the wall, arms crossed"
+            return
+        beside = is_beside(read) and self.keyframes and resting is None and self._tells_same(index)
+        if beside and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN) and not deed.named:
+            self.why[index] = BESIDE
+            self.deeds.pop(index, None)
             return
         match deed.skill:
             case Skill.STANDUP if self.keyframes and resting is None and is_beside(read):
@@ -339,6 +318,10 @@ class KeyframeWriter:
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
                 self._rest(index, read, deed, mood, deed.skill, shown)
+
+    def _tells_same(self, index: int) -> bool:
+        """Whether the last keyframe is of the beat just before: something is done, on one's feet."""
+        return index > 0 and index - 1 in (self.keyframes[-1].beat, *self.keyframes[-1].also)
 
     def _is_on_body(self, index: int, read: ReadBeat) -> bool:
         """Whether what hands would do it to is held or worn already: nobody walks to it, and it is not seen."""

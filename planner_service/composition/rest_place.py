@@ -9,7 +9,7 @@ from typing import Final
 
 from motion_backend.motion import RISINGS, Skill
 from planner_service.composition.caption_senses import shows
-from planner_service.composition.deed_lexicon import Deed, DeedRow, where
+from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, where
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import HARDLY, HARDLY_HERE, DeedReader, seated_as_well
 from planner_service.scripts.script import PlannedKeyframe
@@ -154,9 +154,25 @@ def on_feet(
         return Deed(_TAKEN, Skill.TOUCH, at, True)
     if deed.row.rests and (stands or deed.skill in avoided):
         return Deed(_STANDING, Skill.LOCO, deed.pieces if deed.named else (), deed.named)
+    if deed.skill in avoided and (ways := standing_as_well(deed)):
+        return Deed(
+            replace(deed.row, skill=Skill.LOCO, captions=ways),
+            Skill.LOCO,
+            deed.pieces if deed.named else (),
+            deed.named,
+        )
     if deed.row.standing and stood and not (deed.named or read.clause.verb == "sit"):
         return Deed(_STANDING, Skill.LOCO, (), False)
     return deed
+
+
+def standing_as_well(deed: Deed) -> tuple[str, ...]:
+    """Ways to stand that show what is else done sitting: drinking, eating, reading, praying."""
+    shown = {caption.split()[0].strip(",") for caption in deed.row.captions}
+    return tuple(
+        one for gesture in deed_table().gesture for one in gesture.captions
+        if gesture.skill is Skill.LOCO and one.split()[0].strip(",") in shown
+    )  # fmt: skip
 
 
 def goes_on(read: ReadBeat, deed: Deed) -> bool:

@@ -34,7 +34,9 @@ _OFTEN: Final = re.compile(
 )
 """How often, of what is seen once."""
 _EACH: Final = re.compile(
-    r"\b(?:each|every|all)(?= (?:of )?(?:the |his |her |their |my )?(?P<what>[\w'-]+))", re.IGNORECASE
+    r"\b(?:each|every|all|both|two|three|four|five|six|seven|eight|nine|ten)"
+    r"(?= (?:of )?(?:the |his |her |their |my )?(?P<what>[\w'-]+))",
+    re.IGNORECASE,
 )
 _OBJECT: Final = re.compile(
     r"(?:^|\b(?P<with>with ))(?:(?:up|down|out|away|off|on|together) )?"

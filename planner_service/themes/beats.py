@@ -185,7 +185,12 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
     if emotion is None and not who and _is_frightened(clause):
         emotion = Emotion.STRESSED
     hums = bool(who) and clause.verb in (*theme_words()["sounds"], "hum", "sing", "whistle", "purr")
-    theirs = hums or is_person(who)  # of what becomes of a dog, or an exam, the story's person feels something
+    left = who.lower() in ("nobody", "no one") and clause.verb in theme_words()["missed_verbs"]
+    if left:  # "Nobody comes."
+        emotion, sure = Emotion.SAD, True
+    theirs = not left and (
+        hums or is_person(who)
+    )  # of what becomes of a dog, or an exam, the story's person feels something
     if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
@@ -300,6 +305,11 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             mood = before.felt or mood
         elif one.clause.verb in theme_words()["calming_verbs"] and mood is Emotion.ANGRY:
             mood = Emotion.NEUTRAL  # who shrugs is angry no more
+        elif one.felt is Emotion.HAPPY and one.clause.verb in theme_words()["finding_verbs"] and not one.sure:
+            found = one.beat.model_copy(update={"emotion": mood})  # glad of it, and not on the way to it
+            moods.append(replace(one, beat=found))
+            mood = one.felt
+            continue
         elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
                 mood = one.felt

@@ -38,6 +38,7 @@ _ASIDE: Final = frozenset(("while", "until", "when", "after", "before", "because
 _MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing"))
 """What joins main clauses: whom a theme is about does what these tell."""
 _OWNED: Final = re.compile(r"^(?P<owner>.*)['’]s (?=\w)")
+_SOMEBODY: Final = ("somebody", "someone")
 _FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
 _SUBJECTS: Final = frozenset(("he", "she", "they", "who"))
 
@@ -170,6 +171,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if mains and mains[0].lower() == "you":
         return "you"
     people = [clause for clause in told if is_person(clause.subject)]
+    people = [one for one in people if not (pronoun and one is not told[0] and one.subject.lower() in _SOMEBODY)]
     done = (one for one in clauses if not (one.aside or one.joint == "to" or (one.denied and not one.unable)))
     deeds = Counter(one.doer for one in done)
     first = min(((one.sentence, one.place) for one in people if _stands_for(one.subject)), default=(len(clauses), 0))
@@ -355,7 +357,7 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
         return False
     if not hero or hero.lower() in _SUBJECTS:
         called = pronouns_of(subject) in ("", hero.lower()) or hero.lower() not in ("he", "she")
-        return subject[:1].isupper() and " " not in subject and called
+        return subject[:1].isupper() and " " not in subject and called and subject.lower() not in _SOMEBODY
     if main in _FIRST_PERSON:
         return False
     mine, theirs = head_of(subject).lower(), head_of(hero).lower()

@@ -80,7 +80,8 @@ def test_who_goes_back_rests_where_they_did(theme: str, back: str) -> None:
 def test_what_is_done_again_is_done_where_it_was() -> None:
     script = planned("She knocks on the bathroom door. She waits. She knocks again.")
     touched = [one.furniture for one in script.keyframes if one.skill is Skill.TOUCH]
-    assert len(touched) == 2 and len({*touched}) == 1
+    assert len(touched) == 2
+    assert len({*touched}) == 1
 
 
 @pytest.mark.parametrize("meal", ["breakfast", "lunch", "class"])

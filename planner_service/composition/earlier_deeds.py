@@ -1,0 +1,50 @@
+"""What is done again, or gone back to: a deed that a story has had already, where it was done."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Final
+
+from motion_backend.motion import Skill
+from planner_service.composition.deed_lexicon import Deed, deed_table, object_of, pieces_in
+from planner_service.scripts.script import PlannedKeyframe
+from planner_service.themes.beats import ReadBeat
+from planner_service.themes.sentence_parser import Clause
+
+_RETURNS: Final = ("go", "return", "get", "come", "sit", "walk", "settle", "sink", "crawl", "climb", "head")
+_MAT: Final = re.compile(r"\b(?:mat|rug|carpet|floor)\b")
+_RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
+
+
+def done_before(
+    index: int, beats: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe], deeds: Mapping[int, Deed]
+) -> Deed | None:
+    """The deed of a beat's that somebody does again, or goes back to, of those before it; None of any other."""
+    clause = beats[index].clause
+    if "back" in clause.lemmas[:3] and clause.verb in _RETURNS:
+        return _returned_to(clause, keyframes, deeds)
+    told = clause.lemmas[: clause.lemmas.index("again")] if "again" in clause.lemmas else ()
+    if not told or object_of(replace(clause, lemmas=told)) not in ("", "it"):
+        return None  # "knocks again", but not "eats a plum again"
+    same = next((at for at in range(index - 1, -1, -1) if beats[at].clause.verb == clause.verb), None)
+    deed = deeds.get(same) if same is not None else None
+    spot = next((one.furniture for one in reversed(keyframes) if one.beat == same), "")
+    if deed is None or not spot or deed.skill not in (Skill.TOUCH, *_RESTS):
+        return None
+    return replace(deed, pieces=(spot,), named=True)
+
+
+def _returned_to(clause: Clause, keyframes: Sequence[PlannedKeyframe], deeds: Mapping[int, Deed]) -> Deed | None:
+    """What was done last at the seat, bed or floor that somebody goes back to: "goes back to his desk", "sits back
+    down"; None where that was nowhere."""
+    meant = pieces_in(clause.text)
+    seats = {*meant, *(seat for piece in meant for seat in deed_table().seats_at.get(piece, ()))}
+    floor = bool(_MAT.search(clause.text))
+    for one in reversed(keyframes):
+        there = one.furniture in seats or (floor and one.on_floor) or (clause.verb == "sit" and not seats)
+        deed = deeds.get(one.beat) if one.beat is not None else None
+        if one.skill in _RESTS and there and deed is not None and deed.skill is one.skill:
+            return replace(deed, pieces=(one.furniture,), named=True)
+    return None
