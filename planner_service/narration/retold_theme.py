@@ -27,7 +27,7 @@ from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.scripts.script import Beat
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, lemma_of, past
-from planner_service.themes.protagonist import called, hero_of
+from planner_service.themes.protagonist import called, head_of, hero_of
 from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
@@ -76,7 +76,8 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     told = Retelling(tokens_of_theme(theme))
     told.stretches = located(told.tokens, beats)
     told.ends = sentence_ends(theme, told.tokens)
-    _put_in_past(told, plain=own in _PLURAL, all_of_it=_is_present(told))
+    several = own in _PLURAL or (own not in _SINGULAR and is_plural(head_of(hero).lower()))  # "two friends dance, sing"
+    _put_in_past(told, plain=several, all_of_it=_is_present(told))
     _tell_of(voice, told.tokens, hero, own)
     _say_who(voice, told, beats)
     _capitalise(told)
