@@ -3,6 +3,7 @@
 import { ApiError, getHome, postTake, type Skill, type Story } from "./api";
 import { fill, h, icon, type Icon } from "./dom";
 import { EMOTIONS } from "./emotions";
+import { roomNames } from "./furniture-words";
 import { announce } from "./live";
 import { allRooms } from "./room-api";
 import { added, changed, draftOf, dropped, firstChange, moved, placed, roomsNamed, sent, type Draft, type Script } from "./script-draft";
@@ -48,7 +49,7 @@ export class ScriptEditor {
   /** `played` is told of the take that was begun; `left` when all stays as it is. */
   static async open(story: Story, played: Played, left: () => void): Promise<ScriptEditor> {
     const [words, home] = await Promise.all([Vocabulary.load(), getHome(story.id)]);
-    return new ScriptEditor(story, words, words.things(home), played, left);
+    return new ScriptEditor(story, words, words.things(home, roomNames(story)), played, left);
   }
 
   private constructor(story: Story, words: Vocabulary, things: readonly Thing[], played: Played, left: () => void) {
