@@ -58,7 +58,7 @@ _MAKES: Final = (
     ("study", ("desk",)),
     ("dining_room", ("dining_table",)),
 )
-"""What makes a room of a type, categories, classes or groups; the first row that fits counts, whatever else is there."""
+"""What makes a room of a type, categories, classes or groups; the first row that fits counts."""
 _NOT_AT_A_TABLE: Final = frozenset({"armchair", "lounge_chair", "lazy_sofa", "barstool", "ottoman"})
 
 

@@ -39,19 +39,8 @@ export function moversOf(phases: readonly Phase[]): Mover[] {
     .sort((a, b) => b.share - a.share);
 }
 
-/** What kind of motion each makes; none for those of others. */
-const KINDS: Readonly<Record<string, string>> = {
-  procedural: "rules and inverse kinematics, not learned, not simulated",
-  matching: "recorded walks of your clips by motion matching, nothing else",
-  diffusion: "walks learned from recorded people",
-  physics: "simulated",
-};
-
-/** "diffusion (walks learned from recorded people): 76.3 % of the film". */
-function moverWords({ backend, share }: Mover): string {
-  const kind = KINDS[backend];
-  return `${backend}${kind ? ` (${kind})` : ""}: ${percent(share)} of the film`;
-}
+/** "diffusion: 76.3 % of the film". */
+const moverWords = ({ backend, share }: Mover): string => `${backend}: ${percent(share)} of the film`;
 
 /** "diffusion: it floated" as "instead of diffusion, since it floated". */
 const sinceWords = (words: string): string => words.replace(/^(\w+): /, "instead of $1, since ");
