@@ -224,6 +224,17 @@ def test_stories_survive_a_reload_and_the_gallery_has_them_all(
     assert f"#/stories/{story['id']}" in told["links"]
 
 
+def test_a_caption_is_seen_acted_and_nothing_is_kept_or_lost_by_it(visit: Visit, brief: dict[str, Any]) -> None:
+    told = visit("captions", brief["id"])
+    assert told["said"], "who cannot see it is told that it is on its way"
+    assert told["begun"]
+    assert told["moved"]
+    assert max(told["wide"]) <= 0
+    assert told["focused"] == "drinking while standing, cup in the right hand"
+    assert told["after"] == told["before"], "what was looked at is thrown away, and so is what was cancelled"
+    assert told["address"] == f"#/stories/{brief['id']}"
+
+
 @pytest.fixture(scope="module")
 def looked(visit: Visit, story: dict[str, Any]) -> dict[str, Any]:
     """The story's page at many sizes, and the script as a form."""
