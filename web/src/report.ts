@@ -27,7 +27,7 @@ export function encoderWords(encoder: string | null): string {
 /** A story's figures, each with what it counts. */
 export function figureList({ motion, screen_time_not_acted: other }: Report): HTMLElement {
   const figures: [string, string][] = [
-    ...(other === null ? [] : ([[percent(other), "of the film shows none of the beats that are acted"]] as [string, string][])),
+    ...(other === null ? [] : ([[percent(other), "of the film shows nothing that the theme asked for"]] as [string, string][])),
     [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
     ...(motion.contact_error === null ? [] : ([[centimetres(motion.contact_error), "from where hands, seat and back should touch, on average"]] as [string, string][])),
     [centimetres(motion.pen_mean), `inside furniture on average; ${percent(motion.pen_share)} of the frames touch any`],

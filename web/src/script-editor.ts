@@ -57,7 +57,7 @@ export class ScriptEditor {
     [this.#story, this.#words, this.#things, this.#played, this.#left] = [story, words, things, played, left];
     this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend, rooms: "" };
     this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", oninput: () => (this.#play.disabled = this.#from({ ...this.#now, seed: this.#seed.value }) === null), onchange: () => this.#stage({ seed: this.#seed.value }) });
-    this.#backend = h("select", { id: "take-backend", "aria-describedby": this.#mover.id, onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.about.split(":", 1)[0])));
+    this.#backend = h("select", { id: "take-backend", "aria-describedby": this.#mover.id, onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.about.split(/ ?[(:]/, 1)[0])));
     this.#rooms = h("input", { id: "take-home", class: "home", list: "take-rooms", placeholder: "its own home", autocomplete: "off", spellcheck: false, onfocus: () => void this.#name(), oninput: () => (this.#play.disabled = false), onchange: () => this.#stage({ rooms: this.#rooms.value.trim() }) });
     const upload = new Upload((ids) => this.#stage({ rooms: ids.join(", ") }));
     const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Leave it");

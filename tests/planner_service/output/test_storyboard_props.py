@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from for_each import for_each
 
-from motion_backend.body.cast import Role
+from motion_backend.body.cast import Role, acted_captions
 from motion_backend.motion import Skill
 from motion_backend.rendering.motion_figures import Acting, home_props
 from planner_service.evaluation.trials import act_trial, setting
