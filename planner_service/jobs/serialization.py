@@ -95,7 +95,7 @@ def summary_of_home(stage: Furnished) -> Json:
     nodes: list[Json] = []
     edges: list[list[int]] = []
     placed = list(zip(stage.script.keyframes, stage.places, strict=True))
-    called = {keyframe.room: stage.room_of(place) for keyframe, place in placed}
+    called: dict[str | None, str] = {keyframe.room: stage.room_of(place) for keyframe, place in placed}
     for room, graph in stage.graphs.items():
         numbers = {node: len(nodes) + number for number, node in enumerate(sorted(graph))}
         name = called.get(room, room)
