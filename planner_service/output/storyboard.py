@@ -112,13 +112,13 @@ def _panel(stage: _Stage, index: int, keyframe: Caption, target: str | None) -> 
     frames = np.flatnonzero(stage.motion.actions == index)
     start, stop = int(frames[0]), int(frames[-1]) + 1
     shot = choose_frames(stage.motion, stage.joints, start, stop, Skill(keyframe.skill))
-    shot = replace(shot, frame=_frame_with_held(stage, shot, start, stop, Skill(keyframe.skill)))
+    shot = _with_held(stage, shot, start, stop, Skill(keyframe.skill))
     return _Panel(index, keyframe, target, start, stop, shot, _window(stage, start, stop, shot))
 
 
-def _frame_with_held(stage: _Stage, shot: Shot, start: int, stop: int, skill: Skill) -> int:
-    """The frame of a shot, moved to where what is held in these frames is seen: of who is on the way or at something
-    the nearest one, of who rests the one in which it is nearest to the head."""
+def _with_held(stage: _Stage, shot: Shot, start: int, stop: int, skill: Skill) -> Shot:
+    """A shot moved to where what is held in these frames is seen: of who is on the way or at something the nearest
+    frame, of who rests the one in which it is nearest to the head, without ghosts that would lie over it."""
     said = stage.role.captions.get(int(stage.motion.actions[start]))
     held = None if said is None else held_in(*said)
     own_props = {grip.prop for grip in held.props} if held else set()
@@ -134,14 +134,14 @@ def _frame_with_held(stage: _Stage, shot: Shot, start: int, stop: int, skill: Sk
         near = np.linalg.norm(track.positions[own] - head, axis=1)
         away[first - start : last - start] = np.minimum(away[first - start : last - start], near)
     frames = start + np.flatnonzero(seen)
+    if not len(frames):
+        return shot
     if skill in (Skill.SITDOWN, Skill.LIEDOWN):
         # Who sits down with it in the hand is shown seated.
         settled = frames[frames >= max((*shot.ghosts, start))]
         frames = settled if len(settled) else frames
-        aim = away[frames - start]
-    else:
-        aim = np.abs(frames - shot.frame)
-    return int(frames[np.argmin(aim)]) if len(frames) else shot.frame
+        return Shot(int(frames[np.argmin(away[frames - start])]))
+    return replace(shot, frame=int(frames[np.argmin(np.abs(frames - shot.frame))]))
 
 
 def _held(stage: _Stage, frame: int) -> NDArray[np.floating]:
