@@ -10,7 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from motion_backend.backends import movers
+from motion_backend.backends import about, movers
 from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.motion_json import phase_to_dict
@@ -264,7 +264,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         **story.beats.to_dict(),
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
-        "moved_by": movers(story.report["made_by"], planned.request.backend),
+        "moved_by": {name: about(name) for name in (planned.request.backend, *story.report["made_by"])},
         "motion": story.report,
         "limits": held_against(story.report),
         "keyframes": list(_performances(story)),

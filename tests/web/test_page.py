@@ -17,6 +17,7 @@ import pytest
 from body_in_film import PRESENT, body_shares, decoded
 from running import PATIENCE, RunningService, finished
 
+from motion_backend.backends import about
 from motion_backend.rendering.film_picture import split
 from planner_service.jobs.film_stages import Filmer
 from planner_service.library.library import Shelves
@@ -413,7 +414,7 @@ def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side
         assert f"{motion['reached']} of {motion['keyframes']}" in figures
         assert f"{motion['seconds']:.0f} s" in figures
         for name, share in motion["made_by"].items():
-            assert f"{name} (" in movers
+            assert f"Moved by {about(name)}; " in movers
             assert f"{100 * share:.1f} % of the film" in movers
     reasons = {phase["fallback"] for one in learned["report"]["keyframes"] for phase in one["phases"]} - {None}
     told_reasons = backends["movers"][1].count(" %: ")

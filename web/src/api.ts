@@ -111,8 +111,8 @@ export interface Report {
   readonly physics_mode: string;
   /** Share of the film in which no beat of the theme is acted, 0 to 1; null where there is no theme. */
   readonly screen_time_not_acted: number | null;
-  /** Who moved the body, in sentences; stories made by earlier versions have none, and no words beside limits. */
-  readonly moved_by?: readonly string[];
+  /** Who moved the body, in words by backend; stories made by earlier versions have none, and no words beside limits. */
+  readonly moved_by?: Readonly<Record<string, string>>;
   /** Of every figure that has a limit whether it is kept, and what it means if it is not. */
   readonly limits?: readonly { readonly figure: string; readonly kept: boolean; readonly words?: string | null }[];
   readonly motion: {

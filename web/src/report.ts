@@ -63,8 +63,7 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
     remarks.length ? h("ul", { class: "remarks" }, ...remarks) : h("p", { class: "fine" }, "Nothing stands out: every moment came out as it was meant to."),
     h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder))),
     h("h3", {}, "What moved the body"),
-    ...(report.moved_by ?? []).map((words) => h("p", { class: "fine moved-by" }, words)),
-    moverList(phasesOf(report)),
+    moverList(phasesOf(report), report.moved_by),
   );
   return true;
 }
