@@ -6,6 +6,7 @@ function without arguments). Nothing of a backend is imported before it is asked
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from pathlib import Path
@@ -26,12 +27,12 @@ _OURS: Final = {
 }
 """Our backends: name, and where what makes it is defined."""
 _ABOUT: Final = {
-    "procedural": "kinematic, not learned",
-    MATCHING: "recorded walks of your clips by motion matching, nothing else",
-    DIFFUSION: "walks learned from recorded people, all else from our own body",
-    "physics": "simulated (MuJoCo, tracked by model-predictive control, no root force)",
+    "procedural": ("rules", "no learned model, no simulation"),
+    MATCHING: ("motion matching", "recorded walks of your clips, nothing else; no learned model, no simulation"),
+    DIFFUSION: ("a diffusion model", "walks learned from recorded people, all else from our own body; no simulation"),
+    "physics": ("physics", "simulated by MuJoCo, tracked by model-predictive control, no root force"),
 }
-"""What a reader of figures must know of them."""
+"""Who moves the body, in plain words, and what a reader of figures must know of that."""
 _given: dict[str, Path] = {}
 
 
@@ -66,8 +67,18 @@ def offered_backends() -> tuple[str, ...]:
 
 
 def about(name: str) -> str:
-    """A backend by its name and, of ours, what kind of motion it makes."""
-    return f"{name} ({_ABOUT[name]})" if name in _ABOUT else name
+    """Who moves the body: "rules (procedural): no learned model, no simulation"; of others' backends only the name."""
+    if name not in _ABOUT:
+        return name
+    who, what = _ABOUT[name]
+    return f"{who} ({name}): {what}" if who != name else f"{name}: {what}"
+
+
+def movers(made_by: Mapping[str, float], asked: str) -> list[str]:
+    """Who moved a story's body, in sentences: the backend that was asked for, and for how much of the time (shares by
+    backend) another stood in for it."""
+    others = (f"{share:.0%} of the time by {about(name)}." for name, share in made_by.items() if name != asked)
+    return [f"Moved by {about(asked)}.", *others]
 
 
 def require_backend(name: str) -> None:

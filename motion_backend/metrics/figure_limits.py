@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
+from motion_backend.metrics.figure_words import missed_words
 from motion_backend.metrics.joint_speed import MOST as FASTEST_JOINT
 from motion_backend.motion import RISINGS, Skill
 
@@ -78,15 +79,23 @@ STORY_LIMITS: Final = (
 
 
 def held_against(figures: Mapping[str, Any], limits: Sequence[Limit] = STORY_LIMITS) -> list[dict[str, Any]]:
-    """Every limited figure that is there beside its limit, and whether it is kept; for reports."""
-    return [
-        {
-            "figure": limit.figure,
-            "value": figures[limit.figure],
-            "least": limit.least,
-            "most": limit.most,
-            "kept": not limit.missed(figures[limit.figure]),
-        }
-        for limit in limits
-        if figures.get(limit.figure) is not None
-    ]
+    """Every limited figure that is there beside its limit, whether it is kept, and if not, what that means in everyday
+    words; for reports."""
+    rows = []
+    for limit in limits:
+        value = figures.get(limit.figure)
+        if value is None:
+            continue
+        missed = limit.missed(value)
+        words = missed_words(limit.figure, value, limit.least, limit.most) if missed else None
+        rows.append(
+            {
+                "figure": limit.figure,
+                "value": value,
+                "least": limit.least,
+                "most": limit.most,
+                "kept": not missed,
+                "words": words,
+            }
+        )
+    return rows

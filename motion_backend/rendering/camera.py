@@ -35,6 +35,8 @@ HANDS = [INDEX["left_wrist"], INDEX["right_wrist"]]
 """Joints that a picture should show."""
 HIDDEN, BLOCKED, AT_WINDOW, INDOORS = 2.5, 3.0, 2.0, 0.3
 """What counts how much: a body that is hidden, an eye within furniture, a curtain, an eye in the body's room."""
+HELD = 0.15
+"""And to have what is held on the camera's side of the body."""
 CLOSE = 0.4
 """Metres in front of an eye that are free of furniture."""
 _SHOULDERS = [INDEX["left_shoulder"], INDEX["right_shoulder"]]
@@ -86,8 +88,16 @@ def _at_full_reach(joints: NDArray[np.floating], start: int, stop: int) -> Shot:
     return Shot(start + frame, (start + int(away[-1]),) if len(away) else ())
 
 
-def choose_camera(home: Home | None, motion: Motion, joints: NDArray[np.floating], shot: Shot, aspect: float) -> Camera:
-    """A camera about 20 degrees above with all poses in the picture, no furniture in the way and the face in view."""
+def choose_camera(
+    home: Home | None,
+    motion: Motion,
+    joints: NDArray[np.floating],
+    shot: Shot,
+    aspect: float,
+    held: NDArray[np.floating] | None = None,
+) -> Camera:
+    """A camera about 20 degrees above with all poses in the picture, no furniture in the way and the face in view; of
+    two like ones the one before which what is `held` there (N, 3) lies nearer than the body."""
     poses = np.asarray(joints[[shot.frame, *shot.ghosts]], dtype=np.float64)
     low, high = poses.min(axis=(0, 1)), poses.max(axis=(0, 1)) + np.array([0, 0.12, 0])
     low[1] = min(low[1], 0.0)
@@ -98,6 +108,9 @@ def choose_camera(home: Home | None, motion: Motion, joints: NDArray[np.floating
     distance = max(distance, 3.0)
     cameras = [orbit((x, y, z), distance, float(yaw), PITCH, FOV) for yaw in YAWS]
     wanted = liking(motion, shot)
+    if held is not None and len(held):
+        aside = held.mean(axis=0) - joints[shot.frame, INDEX["spine3"]]
+        wanted += HELD * np.cos(YAWS - np.arctan2(aside[0], aside[2]))
     if home is not None:
         sight = Sight.at(home, (x, z), distance + 1.0)
         wanted += [sight.score(camera, poses[:1]) for camera in cameras]

@@ -16,7 +16,11 @@ from planner_service.settings import SettingsError
 
 ModelOption = Annotated[
     str | None,
-    typer.Option("--model", help='The language model (SIMS_LLM_MODEL), such as "ollama:qwen3"; "rules" for none.'),
+    typer.Option(
+        "--model",
+        help='The language model (SIMS_LLM_MODEL), such as "ollama:qwen3"; "rules" for none. A model needs the '
+        'extra llm: pip install "sims-stories[llm]"; one in a file of yours llamacpp.',
+    ),
 ]
 
 JsonOption = Annotated[bool, typer.Option("--json", help="One JSON object instead of tables.")]
@@ -35,9 +39,20 @@ HeightOption = Annotated[
     float, typer.Option("--height", help="Metres, 1.1 to 2.2; left at 1.7, a child is as tall as children are.")
 ]
 FilmOption = Annotated[
-    bool, typer.Option("--film", help="Write film.mp4 too; a minute of it takes about twenty seconds.")
+    bool,
+    typer.Option(
+        "--film",
+        help="Write film.mp4 too; a minute of it takes about twenty seconds. Needs the extra video: "
+        'pip install "sims-stories[video]" (make demo brings it).',
+    ),
 ]
-UsdOption = Annotated[bool, typer.Option("--usd", help="Write film.usd too, for engines that read USD.")]
+UsdOption = Annotated[
+    bool,
+    typer.Option(
+        "--usd",
+        help='Write film.usd too, for engines that read USD. Needs the extra usd: pip install "sims-stories[usd]".',
+    ),
+]
 
 
 @contextmanager

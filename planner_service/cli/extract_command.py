@@ -41,7 +41,10 @@ def extract(
     every: Annotated[bool, typer.Option("--all", help="List all that no keyframe shows.")] = False,
     model: ModelOption = None,
 ) -> None:
-    """Take short scripts out of a film, subtitles or a text: by the language model if one is set, else by rules."""
+    """Take short scripts out of a film, subtitles or a text: by the language model if one is set, else by rules.
+
+    Films need the extra video, what is spoken in them the extra asr: pip install "sims-stories[video,asr]".
+    """
     from planner_service.extraction.extract import extract
     from planner_service.extraction.extraction_result import Means, Source
     from planner_service.extraction.speech_to_text import load_transcriber

@@ -30,10 +30,10 @@ def mcp(
     key: Annotated[str, typer.Option(help="Its key, where it needs one (SIMS_KEY).", envvar="SIMS_KEY")] = "",
     out: Annotated[Path, typer.Option(help="Folder that fetched files go to.")] = Path("out"),
 ) -> None:
-    """Offer the service to an agent as tools, over standard input and output.
+    """Offer the service to an agent as tools; needs the extra mcp: pip install "sims-stories[mcp]".
 
-    plan (a theme to its script), make (begins a story), follow (waits for it), fetch (its film or another file of it).
-    How an agent is told to run it: docs/commands.md.
+    An agent can then turn a theme into a script (plan), have it acted (make), wait for it (follow) and get its film or
+    another file of it (fetch), over standard input and output. How it is told to run this: docs/commands.md.
     """
     check_extra()
     from planner_service.client import AsyncClient

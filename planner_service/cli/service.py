@@ -108,6 +108,7 @@ EXTRAS = {
     "llm": ("pydantic_ai", "models over HTTP"),
     "llamacpp": ("llama_cpp", "weights of your own, in a GGUF file"),
     "video": ("av", "films"),
+    "usd": ("pxr", "film.usd"),
     "mcp": ("mcp", "agents"),
     "asr": ("faster_whisper", "the speech of films, on this machine"),
 }
@@ -138,7 +139,10 @@ def list_models() -> None:
 
 @app.command()
 def check() -> None:
-    """Ask the model of SIMS_LLM_MODEL one small question and say what works."""
+    """Ask the model of SIMS_LLM_MODEL one small question and say what works.
+
+    Models need the extra llm: pip install "sims-stories[llm]"; one in a file of yours the extra llamacpp.
+    """
     settings = read_settings()
     # Nothing remembered or recorded: it is the model that is tried.
     named = settings.llm_model or ""

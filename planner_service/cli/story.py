@@ -14,8 +14,8 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.text import Text
 
-from motion_backend.backends import about
 from motion_backend.metrics.figure_limits import held_against
+from motion_backend.metrics.figure_words import told_limits
 from motion_backend.motion import Character
 from planner_service.cast_choice import told_look
 from planner_service.cli.cast_command import CharacterOption, character_given
@@ -54,6 +54,7 @@ MAX_FILE_LINES = 100_000
 """Bytes of a theme's file that are read."""
 OUT = Path("out")
 """Where stories go that nobody gave a folder."""
+READ_MORE = "Every figure is in report.json; docs/metrics.md says what each means."
 MAX_NAME = 60
 """Letters of a folder's name."""
 TOLD = {
@@ -200,7 +201,7 @@ def read_rooms(argument: str) -> tuple[str, ...]:
 
 def _close(console: Console, made: Story, files: list[Path]) -> None:
     """The closing table: what was reached, and how well; and which beats of the theme were acted."""
-    from planner_service.output.story_export import told_notes
+    from planner_service.output.story_export import makers, told_notes
 
     told = made.told
     console.print(f"\n{told.title}\n", style="bold", highlight=False)
@@ -209,11 +210,13 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     table = plain_table(
         "#", "moment", "at", "seconds", "reached", "off by", right=("#", "seconds", "off by"), fold=True
     )
+    names, several = made.planned.stage.names, len(made.planned.home.rooms) > 1
     for action, figure in zip(made.actions, made.figures, strict=True):
+        piece, room = names[action.keyframe]
         table.add_row(
             str(figure.keyframe + 1),
             action.caption,
-            action.object_id or "the floor",
+            f"{piece}, {room}" if several else piece,
             f"{figure.seconds:.1f}",
             "yes" if figure.reached else Text(f"no {figure.reason}", style="red"),
             "" if figure.contact_error is None else _cm(figure.contact_error),
@@ -224,9 +227,7 @@ def _close(console: Console, made: Story, files: list[Path]) -> None:
     console.print(f"\n{_figures(made.report)}", highlight=False)
     for line in made.beats.lines():
         console.print(line, highlight=False, soft_wrap=True)
-    movers = _movers(made.report["made_by"], made.planned.request.backend)
-    encoder = f" · encoder: {made.planned.script.encoder}" if made.planned.script.encoder else ""
-    console.print(f"planner: {made.planned.script.planner} · motion: {movers}{encoder}", highlight=False)
+    console.print(" ".join(makers(made.planned, made.report)), highlight=False)
     if made.planned.spent is not None:
         console.print(f"language model: {made.planned.spent}", highlight=False)
     for line in told_notes(made):
@@ -252,22 +253,13 @@ def _slanted(told: Told, console: Console) -> Text:
 def _figures(report: dict[str, Any]) -> str:
     """How well it was done, in a sentence; all figures stand in report.json."""
     off = "" if report["contact_error"] is None else f" Seat, bed and hand are {_cm(report['contact_error'])} off."
-    limits = held_against(report)
-    missed = ", ".join(one["figure"] for one in limits if not one["kept"])
-    kept = f"{sum(one['kept'] for one in limits)} of {len(limits)} limits are kept"
-    besides = f"\n{kept}; missed, see limits in report.json: {missed}" if missed else ""
+    limits = "\n".join([*told_limits(held_against(report)), READ_MORE])
     return (
         f"{report['reached']} of {report['keyframes']} moments were done, in {report['seconds']:.0f} s.{off} "
         f"The body is in furniture {100 * report['pen_share']:.1f} % of the time, and a foot that stands slips "
-        f"{report['slip']:.1f} cm a second.{besides}"
+        f"{report['slip']:.1f} cm a second.\n{limits}"
     )
 
 
 def _cm(metres: float) -> str:
     return f"{100 * metres:.1f} cm"
-
-
-def _movers(made_by: dict[str, float], asked: str) -> str:
-    """Who moved the body: the backend that was asked for, and for how much of the time another stood in for it."""
-    others = [f"{share:.0%} of the time {about(name)} in its place" for name, share in made_by.items() if name != asked]
-    return ", ".join([about(asked), *others])

@@ -270,6 +270,11 @@ def piece_of(trial: Trial) -> str:
     return actions[-1].object_id or FLOOR
 
 
+def keyframes_of(trial: Trial) -> tuple[Keyframe, ...]:
+    """The script of a trial: what leads up to it, and itself. Raises UnreachableError as `piece_of`."""
+    return _actions(trial, setting(trial.room), _luck(trial))[0]
+
+
 def _luck(trial: Trial) -> np.random.Generator:
     return np.random.default_rng([trial.seed, zlib.crc32(trial.room.encode())])
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -39,7 +39,7 @@ class RoomMatch:
     """One room of the home and how well it fits what is played in it."""
 
     room_type: str
-    """What the script asked for."""
+    """What the room is called, wherever it is named: `called`."""
     layout_id: str
     distance: int
     exact: bool
@@ -68,13 +68,17 @@ class Furnished:
         """Keyframe index to the words a story uses for its furniture and room; the floor has no word."""
         named = {}
         for index, place in enumerate(self.places):
-            room = self.matches[place.room].room_type.replace("_", " ")
+            room = self.room_of(place).replace("_", " ")
             piece = "floor"
             if place.object_id is not None:
                 piece = display_name(self.home.object(place.object_id).category)
             piece = self._opening(index) or piece
             named[index] = (piece, room)
         return named
+
+    def room_of(self, place: Place) -> str:
+        """The type of room that a keyframe's body is in."""
+        return self.matches[place.room].room_type
 
     def _opening(self, index: int) -> str:
         """The window or door that a hand goes to there, or that who walks goes to where one does; else ""."""
@@ -104,12 +108,18 @@ class Furnished:
         lines = []
         for number, match in enumerate(self.matches):
             line = f"{match.room_type.replace('_', ' ')}: {match.layout_id}"
+            asked = {keyframe.room for keyframe, place in self._placed() if place.room == number and keyframe.room}
+            if others := sorted(asked - {match.room_type}):
+                line += f", where the script asks for a {' and a '.join(others).replace('_', ' ')}"
             line += "" if match.exact else " (another may fit better)"
             given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
             pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
             pulls += [f"{self._name(number, move)} drawn up to its table" for move in match.drawn_up]
             lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing], *pulls]))
         return lines
+
+    def _placed(self) -> Iterator[tuple[PlannedKeyframe, Place]]:
+        return zip(self.script.keyframes, self.places, strict=True)
 
     def _name(self, room: int, pull: Pull) -> str:
         return f"{display_name(self.home.object(f'{room}/{pull.object_id}').category)} {pull.object_id}"
@@ -285,5 +295,14 @@ def _matches(unique: Sequence[Layout], chosen: Chosen, stand_ins: Sequence[Stand
         substitutions = tuple(dict.fromkeys(given))
         substitutions += tuple((asked, given, "affordance") for asked, given in served.items())
         missing = tuple(dict.fromkeys(n for match in played for n in match.missing if n not in served))
-        matches.append(replace(first, substitutions=substitutions, missing=missing))
+        name = called(layout, [match.room_type for match in played])
+        matches.append(replace(first, room_type=name, substitutions=substitutions, missing=missing))
     return tuple(matches)
+
+
+def called(layout: Layout, asked: Sequence[str]) -> str:
+    """What a room is called in which a script plays what it asks for in rooms of some types: by one of them where the
+    room is or serves that, else by its own type. A room with a bed is a bedroom, whatever desk stands in it."""
+    if layout.room_type in asked or layout.room_type == "bedroom":
+        return layout.room_type
+    return next((room for room in asked if room in layout.tags), layout.room_type)

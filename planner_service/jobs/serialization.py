@@ -94,13 +94,16 @@ def summary_of_home(stage: Furnished) -> Json:
     """What a story shows of its home: rooms, graph, and the object of every keyframe."""
     nodes: list[Json] = []
     edges: list[list[int]] = []
+    placed = list(zip(stage.script.keyframes, stage.places, strict=True))
+    called: dict[str | None, str] = {keyframe.room: stage.room_of(place) for keyframe, place in placed}
     for room, graph in stage.graphs.items():
         numbers = {node: len(nodes) + number for number, node in enumerate(sorted(graph))}
-        nodes += [{"category": node.category, "instance": node.instance, "room": room} for node in numbers]
+        name = called.get(room, room)
+        nodes += [{"category": node.category, "instance": node.instance, "room": name} for node in numbers]
         edges += sorted(sorted((numbers[a], numbers[b])) for a, b in graph.edges)
     keyframes = _keyframes(stage.script)
     for row, place in zip(keyframes, stage.places, strict=True):
-        row["object_id"] = place.object_id
+        row["object_id"], row["room"] = place.object_id, stage.room_of(place)
     return {
         "keyframes": keyframes,
         "repairs": list(stage.script.repairs),

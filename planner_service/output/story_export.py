@@ -10,12 +10,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from motion_backend.backends import about, movers
 from motion_backend.formats.bvh import write_bvh
 from motion_backend.formats.glb_film import film_glb
 from motion_backend.formats.motion_json import phase_to_dict
 from motion_backend.formats.npz import write_npz
 from motion_backend.formats.usd_film import film_usd
 from motion_backend.metrics.figure_limits import held_against
+from motion_backend.metrics.figure_words import told_limits
 from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.narration.told import UNSEEN
@@ -30,6 +32,14 @@ from scene_graphs.home import home_to_dict
 Writer = Callable[[Path], object]
 FILM = "film.mp4"
 USD = "film.usd"
+PLANNERS = {
+    "rules": "rules, without a language model",
+    "markov": "drawing at random what is plausible (markov)",
+    "given": "whoever gave the keyframes",
+}
+"""Who plans where no language model does."""
+ENCODERS = {"hashing": "their words (hashing), for want of the sentence encoder"}
+"""Ways to find scripts that are no encoder's name."""
 FILES = ("story.md", "story.json", "report.json", "motion.npz", "motion.bvh", "film.glb", "storyboard.png")
 
 
@@ -140,6 +150,7 @@ def story_to_markdown(story: Story) -> str:
     notes = [f"- {line}" for line in told_notes(story)] or ["- nothing"]
     repairs = [f"- {line}" for line in script.repairs] or ["- none"]
     beats = [f"- {line}" for line in story.beats.lines()]
+    limits = [line if line.startswith("- ") else f"{line}\n" for line in told_limits(held_against(story.report))]
     return "\n".join(
         [
             f"# {story.told.title}",
@@ -150,7 +161,9 @@ def story_to_markdown(story: Story) -> str:
             "## How it was made",
             "",
             *([f"Theme: {script.theme}", ""] if script.theme else []),
-            _makers(planned),
+            " ".join(makers(planned, story.report)),
+            "",
+            f"Method: {planned.script.method} · seed: {planned.request.seed}",
             "",
             f"Played by {', '.join(told_look(planned.character))}.",
             "",
@@ -164,6 +177,10 @@ def story_to_markdown(story: Story) -> str:
             "Repairs:",
             "",
             *repairs,
+            "",
+            "How well it moves:",
+            "",
+            *limits,
             "",
             "Done otherwise than the captions say:",
             "",
@@ -194,13 +211,12 @@ def told_notes(story: Story) -> list[str]:
     ]
 
 
-def _makers(planned: Planned) -> str:
+def makers(planned: Planned, report: Mapping[str, Any]) -> list[str]:
+    """Who planned a story, how its scripts were found, and who moved the body; in sentences."""
     script = planned.script
-    encoder = f"encoder: {script.encoder} · " if script.encoder else ""
-    return (
-        f"Planner: {script.planner} · method: {script.method} · {encoder}"
-        f"motion: {planned.request.backend} · seed: {planned.request.seed}"
-    )
+    planner = PLANNERS.get(script.planner, f"a language model ({script.planner})")
+    encoder = [f"Scripts were found by {ENCODERS.get(script.encoder, script.encoder)}."] if script.encoder else []
+    return [f"Planned by {planner}.", *encoder, *movers(report["made_by"], planned.request.backend)]
 
 
 def _mark(reached: bool) -> str:
@@ -248,6 +264,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         **story.beats.to_dict(),
         "repairs": list(planned.script.repairs),
         "rooms": planned.stage.rooms_to_dicts(),
+        "moved_by": {name: about(name) for name in (planned.request.backend, *story.report["made_by"])},
         "motion": story.report,
         "limits": held_against(story.report),
         "keyframes": list(_performances(story)),

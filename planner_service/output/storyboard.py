@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, Skill
+from motion_backend.props import held_in
 from motion_backend.rendering.camera import Shot, choose_camera, choose_frames
 from motion_backend.rendering.motion_figures import Acting, Prop, around, home_props
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Image, render
 from motion_backend.rotations import Array
-from motion_backend.skeleton import PARENTS
+from motion_backend.skeleton import INDEX, PARENTS
 from scene_graphs.home import Home
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ TEXT, GAP, HEAD = 62, 18, 52
 COLUMNS = 3
 DPI = 100
 INK, WAY, BODY = "#23262b", "#d9480f", "#1c5d99"
+WHOLE = 0.98
+"""Of its size: what is held is drawn where it is there."""
 WORKERS = 2
 """Pictures drawn at once; numpy lets go of the interpreter for most of the work."""
 
@@ -64,6 +67,7 @@ class _Stage:
     joints: NDArray[np.float32]
     props: list[Prop]
     acting: Acting
+    role: Role
 
 
 @dataclass(frozen=True)
@@ -90,12 +94,12 @@ def storyboard(
     role: Role = PLAIN,
 ) -> Path:
     """Draw all keyframes a motion serves and save the picture as a PNG; `targets` are ids of the objects they use."""
-    stage = _Stage(home, motion, motion.joint_positions(), home_props(home), Acting.of(motion, role))
+    stage = _Stage(home, motion, motion.joint_positions(), home_props(home), Acting.of(motion, role), role)
     served = np.unique(motion.actions).tolist()
     panels = [_panel(stage, i, keyframes[i], targets[i] if targets else None) for i in served]
     windows = sorted({panel.window for panel in panels})
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
-        pictures = list(pool.map(lambda panel: _picture(stage, panel.shot), panels))
+        pictures = list(pool.map(lambda panel: _picture(stage, panel.shot, _camera(stage, panel.shot)), panels))
         plans = dict(zip(windows, pool.map(lambda window: _plan(stage, window), windows), strict=True))
     figure, corners = _sheet(len(panels), title or "Storyboard")
     for panel, picture, corner in zip(panels, pictures, corners, strict=True):
@@ -108,7 +112,41 @@ def _panel(stage: _Stage, index: int, keyframe: Caption, target: str | None) -> 
     frames = np.flatnonzero(stage.motion.actions == index)
     start, stop = int(frames[0]), int(frames[-1]) + 1
     shot = choose_frames(stage.motion, stage.joints, start, stop, Skill(keyframe.skill))
+    shot = _with_held(stage, shot, start, stop, Skill(keyframe.skill))
     return _Panel(index, keyframe, target, start, stop, shot, _window(stage, start, stop, shot))
+
+
+def _with_held(stage: _Stage, shot: Shot, start: int, stop: int, skill: Skill) -> Shot:
+    """A shot moved to where what is held in these frames is seen: of who is on the way or at something the nearest
+    frame, of who rests the one in which it is nearest to the head, without ghosts that would lie over it."""
+    said = stage.role.captions.get(int(stage.motion.actions[start]))
+    held = None if said is None else held_in(*said)
+    own_props = {grip.prop for grip in held.props} if held else set()
+    seen = np.zeros(stop - start, dtype=bool)
+    away = np.full(stop - start, np.inf)
+    for track in stage.acting.props:
+        first, last = max(track.start, start), min(track.stop, stop)
+        if track.prop not in own_props or first >= last:
+            continue
+        own = slice(first - track.start, last - track.start)
+        seen[first - start : last - start] |= track.sizes[own] > WHOLE * track.sizes.max()
+        head = stage.joints[first:last, INDEX["head"]]
+        near = np.linalg.norm(track.positions[own] - head, axis=1)
+        away[first - start : last - start] = np.minimum(away[first - start : last - start], near)
+    frames = start + np.flatnonzero(seen)
+    if not len(frames):
+        return shot
+    if skill in (Skill.SITDOWN, Skill.LIEDOWN):
+        # Who sits down with it in the hand is shown seated.
+        settled = frames[frames >= max((*shot.ghosts, start))]
+        frames = settled if len(settled) else frames
+        return Shot(int(frames[np.argmin(away[frames - start])]))
+    return replace(shot, frame=int(frames[np.argmin(np.abs(frames - shot.frame))]))
+
+
+def _held(stage: _Stage, frame: int) -> NDArray[np.floating]:
+    """Where what is in the hands is at a frame. (N, 3)."""
+    return np.array([one.positions[frame - one.start] for one in stage.acting.props if one.start <= frame < one.stop])
 
 
 def _window(stage: _Stage, start: int, stop: int, shot: Shot) -> tuple[float, float, float, float]:
@@ -123,9 +161,12 @@ def _window(stage: _Stage, start: int, stop: int, shot: Shot) -> tuple[float, fl
     return round(x - half, 1), round(z - half, 1), round(x + half, 1), round(z + half, 1)
 
 
-def _picture(stage: _Stage, shot: Shot) -> Image:
+def _camera(stage: _Stage, shot: Shot) -> Camera:
+    return choose_camera(stage.home, stage.motion, stage.joints, shot, SIDE[0] / SIDE[1], _held(stage, shot.frame))
+
+
+def _picture(stage: _Stage, shot: Shot, camera: Camera) -> Image:
     """The body in its pose, with ghosts of the poses before and after."""
-    camera = choose_camera(stage.home, stage.motion, stage.joints, shot, SIDE[0] / SIDE[1])
     x, _, z = stage.joints[shot.frame, 0].tolist()
     poses = stage.joints[[shot.frame, *shot.ghosts]].reshape(-1, 3)
     solids = around(stage.props, camera, poses, stage.home.room_at((x, z)))

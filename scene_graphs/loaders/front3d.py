@@ -24,7 +24,7 @@ from scene_graphs.layout import Array, Layout, Point2
 from scene_graphs.loaders.doors_and_windows import MAX_GAPS, Gap, distinct, gap_around, gaps_of_rooms
 from scene_graphs.loaders.floor_polygon import floor_from_triangles
 from scene_graphs.loaders.frames import coordinates, corners_of, read_pose
-from scene_graphs.loaders.furniture_names import exact_category, rooms_served
+from scene_graphs.loaders.furniture_names import exact_category, likely_room, rooms_served
 from scene_graphs.loaders.future3d import Model, Models
 from scene_graphs.loaders.plan_boxes import UprightBox
 from scene_graphs.loaders.room_builder import Intake, RoomIntake, slug_id
@@ -286,8 +286,9 @@ def _tags(room: HouseRoom, intake: Intake) -> tuple[str, ...]:
     """
     slug = re.sub(r"[^a-z0-9]+", "_", re.sub(r"(?<=[a-z])(?=[A-Z])", "_", room.type).lower())[:60].strip("_")
     named = [room_type for part, room_type in _TYPES if part in room.type.lower()]
-    types = named or [slug if slug not in ("", "none") else intake.options.room_type or "other_room"]
     categories = {canonical(item.model.word) for item in room.items}
+    told = slug if slug not in ("", "none", "other_room") else intake.options.room_type
+    types = named or [told or likely_room("", categories)]
     if slug in ("kids_room", "elderly_room", "nanny_room") and any(class_of(word) == "bed" for word in categories):
         types.append("bedroom")
     return (*types, *rooms_served(types[0], categories))

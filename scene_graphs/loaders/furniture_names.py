@@ -50,8 +50,15 @@ _NOT_WHAT_THEY_END_IN: Final = {
     "laundry_hamper": "hamper",
 }
 """Compounds that are no kind of what their last word names, or whose last word says nothing."""
-_KITCHEN: Final = frozenset({"refrigerator", "stove", "kitchen_counter", "kitchen_cabinet", "dishwasher"})
-_BATHROOM: Final = frozenset({"toilet", "bathtub", "shower"})
+_MAKES: Final = (
+    ("bedroom", ("bed",)),
+    ("bathroom", ("toilet", "bathtub", "shower")),
+    ("living_room", ("sofa",)),
+    ("kitchen", ("refrigerator", "stove", "kitchen_counter", "kitchen_cabinet", "dishwasher")),
+    ("study", ("desk",)),
+    ("dining_room", ("dining_table",)),
+)
+"""What makes a room of a type, categories, classes or groups; the first row that fits counts."""
 _NOT_AT_A_TABLE: Final = frozenset({"armchair", "lounge_chair", "lazy_sofa", "barstool", "ottoman"})
 
 
@@ -113,15 +120,8 @@ def likely_room(name: str, categories: Collection[str]) -> str:
     for room_type in (*ROOM_TYPES, "kitchen", "bathroom"):
         if room_type in words or room_type.replace("_", "") in words:
             return room_type
-    if any(group_of(category) == "bed" for category in categories):
-        return "bedroom"
-    if not _BATHROOM.isdisjoint(categories):
-        return "bathroom"
-    if any(class_of(category) == "sofa" for category in categories):
-        return "living_room"
-    if not _KITCHEN.isdisjoint(categories):
-        return "kitchen"
-    return "study" if "desk" in categories else "dining_room" if "dining_table" in categories else "room"
+    there = {word for category in categories for word in (category, class_of(category), group_of(category))}
+    return next((room_type for room_type, making in _MAKES if not there.isdisjoint(making)), "room")
 
 
 SINGLE, LOVESEAT, CORNER = 1.30, 1.85, 1.60

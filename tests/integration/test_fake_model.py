@@ -126,7 +126,7 @@ def test_a_model_may_write_the_keyframes_itself(shelves: Shelves) -> None:
 def test_the_told_story_of_a_model_is_acted_out_and_says_who_told_it(shelves: Shelves) -> None:
     pipeline = Pipeline(shelves, model=ScriptedModel(answer_well, name="scripted-a"))
     made = pipeline.make(StoryRequest(THEME, seed=3))
-    assert "Planner: llm:scripted-a" in story_to_markdown(made)
+    assert "Planned by a language model (llm:scripted-a)." in story_to_markdown(made)
     assert report_to_dict(made)["planner"] == "llm:scripted-a"
 
 
@@ -143,7 +143,7 @@ def test_a_story_on_the_floor_needs_no_furniture(shelves: Shelves) -> None:
 
     request = StoryRequest("A tired person lies on the floor.", method="direct")
     made = Pipeline(shelves, model=ScriptedModel(answer, name="scripted-a")).make(request)
-    assert "Planner: llm:scripted-a" in story_to_markdown(made)
+    assert "Planned by a language model (llm:scripted-a)." in story_to_markdown(made)
     assert report_to_dict(made)["planner"] == "llm:scripted-a"
     assert [figure.reached for figure in made.figures] == [True] * len(made.figures)
     assert {action.object_id for action in made.actions} <= {None, "floor"}

@@ -110,7 +110,7 @@ def test_the_command_tells_the_story_and_how_well_it_went(told: Told, story: dic
     assert story["title"] in told.stdout
     assert "Zoë [b]" in told.stdout
     assert f"{figures['reached']} of {figures['keyframes']} moments were done" in told.stdout
-    assert "kinematic, not learned" in " ".join(told.stdout.split())
+    assert "Moved by rules (procedural): no learned model, no simulation." in " ".join(told.stdout.split())
     assert told.stderr == ""
 
 

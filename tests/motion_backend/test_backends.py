@@ -15,7 +15,7 @@ from guides import BLOCK, said_as
 from stranger import GUIDE, install
 
 from motion_backend import backends
-from motion_backend.backends import BrokenBackendError, UnknownBackendError, about, backend_names, load_backend
+from motion_backend.backends import BrokenBackendError, UnknownBackendError, about, backend_names, load_backend, movers
 from motion_backend.director import Director
 from motion_backend.motion import Action, Character, Emotion, Skill
 from planner_service.settings import SettingsError, read_settings
@@ -41,9 +41,18 @@ def _forget() -> None:
 def test_ours_are_there_and_say_what_they_are() -> None:
     assert backend_names()[0] == "procedural"
     for name in backends._OURS:
-        assert about(name).startswith(f"{name} (")
+        assert name in about(name)
+        assert ": " in about(name)
+        assert movers({name: 1.0}, name) == [f"Moved by {about(name)}."]
     assert load_backend("procedural").name == "procedural"
+    assert about("procedural") == "rules (procedural): no learned model, no simulation"
     assert about("ghost") == "ghost"
+
+
+def test_who_stood_in_for_a_backend_is_named_with_its_share() -> None:
+    asked, stood_in = movers({"ghost": 0.75, "procedural": 0.25}, "ghost")
+    assert asked == "Moved by ghost."
+    assert stood_in == f"25% of the time by {about('procedural')}."
 
 
 def test_a_backend_of_others_is_there_where_its_package_is(installed: Path) -> None:  # noqa: ARG001

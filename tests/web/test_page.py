@@ -17,6 +17,7 @@ import pytest
 from body_in_film import PRESENT, body_shares, decoded
 from running import PATIENCE, RunningService, finished
 
+from motion_backend.backends import about
 from motion_backend.rendering.film_picture import split
 from planner_service.jobs.film_stages import Filmer
 from planner_service.library.library import Shelves
@@ -224,6 +225,17 @@ def test_stories_survive_a_reload_and_the_gallery_has_them_all(
     assert f"#/stories/{story['id']}" in told["links"]
 
 
+def test_a_caption_is_seen_acted_and_nothing_is_kept_or_lost_by_it(visit: Visit, brief: dict[str, Any]) -> None:
+    told = visit("captions", brief["id"])
+    assert told["said"], "who cannot see it is told that it is on its way"
+    assert told["begun"]
+    assert told["moved"]
+    assert max(told["wide"]) <= 0
+    assert told["focused"] == "drinking while standing, cup in the right hand"
+    assert told["after"] == told["before"], "what was looked at is thrown away, and so is what was cancelled"
+    assert told["address"] == f"#/stories/{brief['id']}"
+
+
 @pytest.fixture(scope="module")
 def looked(visit: Visit, story: dict[str, Any]) -> dict[str, Any]:
     """The story's page at many sizes, and the script as a form."""
@@ -402,7 +414,7 @@ def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side
         assert f"{motion['reached']} of {motion['keyframes']}" in figures
         assert f"{motion['seconds']:.0f} s" in figures
         for name, share in motion["made_by"].items():
-            assert f"{name} (" in movers
+            assert f"Moved by {about(name)}; " in movers
             assert f"{100 * share:.1f} % of the film" in movers
     reasons = {phase["fallback"] for one in learned["report"]["keyframes"] for phase in one["phases"]} - {None}
     told_reasons = backends["movers"][1].count(" %: ")

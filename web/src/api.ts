@@ -111,6 +111,10 @@ export interface Report {
   readonly physics_mode: string;
   /** Share of the film in which no beat of the theme is acted, 0 to 1; null where there is no theme. */
   readonly screen_time_not_acted: number | null;
+  /** Who moved the body, in words by backend; stories made by earlier versions have none, and no words beside limits. */
+  readonly moved_by?: Readonly<Record<string, string>>;
+  /** Of every figure that has a limit whether it is kept, and what it means if it is not. */
+  readonly limits?: readonly { readonly figure: string; readonly kept: boolean; readonly words?: string | null }[];
   readonly motion: {
     readonly reached: number;
     readonly keyframes: number;
@@ -254,12 +258,30 @@ export async function json<T>(path: string, init?: RequestInit): Promise<T> {
 const story = (id: string): string => `v1/stories/${encodeURIComponent(id)}`;
 
 /** Start a story. The same key posted again makes no second one. */
+/** Makes a post that is tried again the same post. randomUUID is missing where the page is not served securely. */
+export function newKey(): string {
+  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
 export function postStory(request: NewStory, key: string): Promise<Story> {
   const headers = { "Content-Type": "application/json", "Idempotency-Key": key };
   return json("v1/stories", { method: "POST", headers, body: JSON.stringify(request) });
 }
 
 /** What is to be different in a take of a story. */
+/** Keyframes to be acted out in a room of the library. */
+export interface NewMotion {
+  readonly layout_id: string;
+  readonly keyframes: readonly { readonly skill: Skill; readonly caption: string }[];
+}
+
+/** What acts a caption out: its keyframe is the last. */
+export const getExample = (skill: Skill, caption: string, signal?: AbortSignal): Promise<NewMotion> => json(`v1/captions/example?${new URLSearchParams({ skill, caption })}`, signal ? { signal } : {});
+
+export function postMotion(motion: NewMotion, key: string): Promise<Story> {
+  return json("v1/motions", { method: "POST", headers: { "Content-Type": "application/json", "Idempotency-Key": key }, body: JSON.stringify(motion) });
+}
+
 export interface NewTake {
   keyframes: readonly { index?: number; skill: Skill; emotion: string; caption: string; furniture: string; object_id?: string }[];
   seed: number;

@@ -2,7 +2,7 @@
 
 import "./style/captions.css";
 import { json, type Skill } from "./api";
-import { fill, h } from "./dom";
+import { fill, h, icon } from "./dom";
 import { announce } from "./live";
 import { capital, count, SKILL_WORDS } from "./words";
 
@@ -23,6 +23,11 @@ export function found(all: readonly CaptionWords[], asked: string): CaptionWords
   });
 }
 
+/** Have it acted before the page; the player is fetched when it is first asked for. */
+function see(one: CaptionWords): void {
+  import("./caption-player").then(({ playCaption }) => playCaption(one)).catch((error: unknown) => announce(error instanceof Error ? error.message : String(error)));
+}
+
 const wordsOf = (text: string): string[] => text.toLowerCase().match(/[\p{L}\p{N}]+/gu) ?? [];
 
 export const captions = {
@@ -36,7 +41,7 @@ export const captions = {
       h(
         "div",
         { class: "library" },
-        h("header", { class: "library-head" }, h("h1", {}, "Captions"), h("p", { class: "hint" }, "What the body knows to do, under each skill: how a script says it, and the deeds of a theme that are seen in it. Other words for them are found too.")),
+        h("header", { class: "library-head" }, h("h1", {}, "Captions"), h("p", { class: "hint" }, "What the body knows to do, under each skill: how a script says it, and the deeds of a theme that are seen in it. Other words for them are found too. Choose one to see it acted.")),
         h("div", { class: "field", role: "search" }, h("label", { for: words.id }, "Find captions"), words),
         list,
       ),
@@ -70,7 +75,8 @@ function lists(some: readonly CaptionWords[]): HTMLElement[] {
   });
 }
 
-function entry({ caption, shows, others }: CaptionWords): HTMLElement {
+function entry(one: CaptionWords): HTMLElement {
+  const { caption, shows, others } = one;
   const seen = shows.length ? shows.join(", ") : null;
-  return h("div", {}, h("dt", {}, caption), seen ? h("dd", {}, `seen as: ${seen}`) : null, others[0] ? h("dd", { class: "hint" }, `also: ${others[0]}`) : null);
+  return h("div", {}, h("dt", {}, h("button", { type: "button", class: "link see", title: "See it acted", onclick: () => see(one) }, icon("play"), caption)), seen ? h("dd", {}, `seen as: ${seen}`) : null, others[0] ? h("dd", { class: "hint" }, `also: ${others[0]}`) : null);
 }

@@ -5,6 +5,7 @@ import { color, isDark, isStill, onAppearance } from "./appearance";
 import type { CameraMode } from "./camera";
 import { Controls } from "./controls";
 import { fill, h } from "./dom";
+import { roomNames } from "./furniture-words";
 import { listenKeys, showHelp } from "./keyboard";
 import { MiniMap } from "./minimap";
 import { Player } from "./player";
@@ -208,7 +209,7 @@ export class Film {
     this.#asked.home = true;
     try {
       const home = await getHome(this.#id);
-      this.#map.setHome(home);
+      this.#map.setHome(home, roomNames(this.#story));
       const glb = getGlb(sceneUrl(this.#id));
       await (await this.#raised)?.setHome(await glb, home);
       this.#mood();

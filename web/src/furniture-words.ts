@@ -1,7 +1,7 @@
 /** Furniture in the words that people use. */
 
 import names from "../../scene_graphs/data/furniture_names.json";
-import type { Keyframe } from "./api";
+import type { Keyframe, Story } from "./api";
 import { plain } from "./words";
 
 const NAMES: Readonly<Record<string, string>> = names;
@@ -17,6 +17,9 @@ export function placeWords({ object_id, furniture, room }: Pick<Keyframe, "objec
   const piece = object_id ? pieceName(object_id) : plain(furniture);
   return room ? `${piece}, ${plain(room)}` : piece;
 }
+
+/** What the rooms of a story's home are called, in their order: the same wherever a room is named. */
+export const roomNames = (story: Pick<Story, "home"> | null): string[] => story?.home?.rooms.map(({ room_type }) => plain(room_type)) ?? [];
 
 /** "2 bookshelves", "a desk" as "desk". */
 export function several(count: number, name: string): string {

@@ -59,7 +59,7 @@ export function listenKeys(keys: Keys): () => void {
 /** Whether the key belongs to what has the focus: writing, choosing, pressing, or a question in front. */
 function busy(event: KeyboardEvent): boolean {
   const target = event.target as Element;
-  if (document.querySelector("dialog[open]") || target.closest("textarea, select, input:not([type=range])")) return true;
+  if (document.querySelector("dialog[open]:not(.player)") || target.closest("textarea, select, input:not([type=range])")) return true;
   if (event.key === " ") return target.closest("button, a, summary, [role=button]") !== null;
   return target.closest("input[type=range]") !== null && /^(Arrow|Home|End)/.test(event.key);
 }

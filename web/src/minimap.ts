@@ -7,7 +7,6 @@ import { nameOf, pieceName } from "./furniture-words";
 import type { Track } from "./motion";
 import { heading, type Pose } from "./pose";
 import { contains, outlines, toHome } from "./walls";
-import { plain } from "./words";
 
 interface Piece {
   readonly id: string;
@@ -40,6 +39,7 @@ export class MiniMap {
   #home: Home | null = null;
   #pieces: Piece[] = [];
   #rooms: Point2[][] = [];
+  #names: readonly string[] = [];
   #scale = 1;
   #shift: Point2 = [0, 0];
   #target: string | null = null;
@@ -58,8 +58,10 @@ export class MiniMap {
     this.element.addEventListener("pointerleave", () => this.#point(null));
   }
 
-  setHome(home: Home): void {
+  /** `names` are what its rooms are called in the story. */
+  setHome(home: Home, names: readonly string[]): void {
     this.#home = home;
+    this.#names = names;
     this.#rooms = outlines(home);
     this.#pieces = home.rooms.flatMap((room, index) =>
       room.layout.objects.filter((object) => object.position[1] < HANGING).map((object) => {
@@ -82,9 +84,8 @@ export class MiniMap {
     const pose = this.#last?.pose;
     const place: Point2 | null = pose ? [pose.root[0]!, pose.root[2]!] : null;
     const room = place === null ? -1 : this.#rooms.findIndex((outline) => contains(outline, place));
-    const rooms = this.#home?.rooms.map((r) => plain(r.layout.room_type)) ?? [];
-    const where = room >= 0 ? ` The body is in the ${rooms[room]}${objectId ? `, on its way to or at the ${pieceName(objectId)}` : ""}.` : "";
-    this.element.setAttribute("aria-label", `Plan of the home: ${rooms.join(", ")}.${where}`);
+    const where = room >= 0 ? ` The body is in the ${this.#names[room]}${objectId ? `, on its way to or at the ${pieceName(objectId)}` : ""}.` : "";
+    this.element.setAttribute("aria-label", `Plan of the home: ${this.#names.join(", ")}.${where}`);
     this.#redraw();
   }
 

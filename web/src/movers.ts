@@ -39,28 +39,17 @@ export function moversOf(phases: readonly Phase[]): Mover[] {
     .sort((a, b) => b.share - a.share);
 }
 
-/** What kind of motion each makes; none for those of others. */
-const KINDS: Readonly<Record<string, string>> = {
-  procedural: "rules and inverse kinematics, not learned, not simulated",
-  matching: "recorded walks of your clips by motion matching, nothing else",
-  diffusion: "walks learned from recorded people",
-  physics: "simulated",
-};
-
-/** "diffusion (walks learned from recorded people): 76.3 % of the film". */
-function moverWords({ backend, share }: Mover): string {
-  const kind = KINDS[backend];
-  return `${backend}${kind ? ` (${kind})` : ""}: ${percent(share)} of the film`;
-}
+/** "Moved by rules (procedural): no learned model, no simulation; 76.3 % of the film". */
+const moverWords = ({ backend, share }: Mover, words: Readonly<Record<string, string>>): string => `Moved by ${words[backend] ?? backend}; ${percent(share)} of the film`;
 
 /** "diffusion: it floated" as "instead of diffusion, since it floated". */
 const sinceWords = (words: string): string => words.replace(/^(\w+): /, "instead of $1, since ");
 
-/** All of them as a list; null while nothing is known. */
-export function moverList(phases: readonly Phase[]): HTMLElement | null {
+/** All of them as a list, each backend in the words given for it; null while nothing is known. */
+export function moverList(phases: readonly Phase[], words: Readonly<Record<string, string>> = {}): HTMLElement | null {
   const movers = moversOf(phases);
   if (!movers.length) return null;
   const reasons = ({ reasons: all }: Mover): HTMLElement | null =>
     all.length ? h("ul", {}, ...all.map(({ words, share }) => h("li", {}, `${percent(share)}: ${sinceWords(words)}`))) : null;
-  return h("ul", { class: "movers", "aria-label": "What moved the body" }, ...movers.map((mover) => h("li", {}, moverWords(mover), reasons(mover))));
+  return h("ul", { class: "movers", "aria-label": "What moved the body" }, ...movers.map((mover) => h("li", {}, moverWords(mover, words), reasons(mover))));
 }

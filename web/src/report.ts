@@ -27,7 +27,7 @@ export function encoderWords(encoder: string | null): string {
 /** A story's figures, each with what it counts. */
 export function figureList({ motion, screen_time_not_acted: other }: Report): HTMLElement {
   const figures: [string, string][] = [
-    ...(other === null ? [] : ([[percent(other), "of the film shows none of the beats that are acted"]] as [string, string][])),
+    ...(other === null ? [] : ([[percent(other), "of the film shows nothing that the theme asked for"]] as [string, string][])),
     [`${motion.reached} of ${motion.keyframes}`, "moments reached their goal"],
     ...(motion.contact_error === null ? [] : ([[centimetres(motion.contact_error), "from where hands, seat and back should touch, on average"]] as [string, string][])),
     [centimetres(motion.pen_mean), `inside furniture on average; ${percent(motion.pen_share)} of the frames touch any`],
@@ -35,6 +35,16 @@ export function figureList({ motion, screen_time_not_acted: other }: Report): HT
     [`${Math.round(motion.seconds)} s`, "of motion at 30 frames a second"],
   ];
   return h("dl", { class: "figures" }, ...figures.flatMap(([value, words]) => [h("dt", {}, value), h("dd", {}, words)]));
+}
+
+/** How many limits are kept, and in everyday words which are not; null for a story of an earlier version. */
+export function limitList({ limits = [] }: Pick<Report, "limits">): HTMLElement | null {
+  const missed = limits.filter(({ kept, words }) => !kept && words);
+  if (!limits.length || missed.length < limits.filter(({ kept }) => !kept).length) return null;
+  const kept = h("p", { class: "fine" }, `${missed.length ? limits.length - missed.length : "All"} ${missed.length ? "of " : ""}${limits.length} limits of how well it moves are kept.`);
+  if (!missed.length) return h("div", { class: "limits" }, kept);
+  kept.append(" Those that are missed are no errors; the story is whole. What each figure counts is told in docs/metrics.md of the project.");
+  return h("div", { class: "limits" }, kept, h("ul", { class: "remarks" }, ...missed.map(({ figure, words }) => h("li", {}, `${capital(words ?? figure)} `, h("code", {}, figure)))));
 }
 
 /** Fill a section with a story's report; false while there is none. */
@@ -49,10 +59,11 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
     story.beats.length ? h("ul", { class: "outcomes", "aria-label": "What became of the beats of your theme" }, ...story.beats.map(became)) : null,
     legend(story.beats, report.keyframes),
     figureList(report),
+    limitList(report),
     remarks.length ? h("ul", { class: "remarks" }, ...remarks) : h("p", { class: "fine" }, "Nothing stands out: every moment came out as it was meant to."),
     h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder))),
     h("h3", {}, "What moved the body"),
-    moverList(phasesOf(report)),
+    moverList(phasesOf(report), report.moved_by),
   );
   return true;
 }

@@ -1,8 +1,9 @@
 /** The script as a form: every moment's words and object can be changed, moments dropped, moved and put in, and played. */
 
-import { ApiError, getHome, postTake, type Skill, type Story } from "./api";
+import { ApiError, getHome, newKey, postTake, type Skill, type Story } from "./api";
 import { fill, h, icon, type Icon } from "./dom";
 import { EMOTIONS } from "./emotions";
+import { roomNames } from "./furniture-words";
 import { announce } from "./live";
 import { allRooms } from "./room-api";
 import { added, changed, draftOf, dropped, firstChange, moved, placed, roomsNamed, sent, type Draft, type Script } from "./script-draft";
@@ -40,6 +41,7 @@ export class ScriptEditor {
   readonly #play = h("button", { type: "button", class: "primary", onclick: () => void this.#send() }, "Play this");
   readonly #seed: HTMLInputElement;
   readonly #backend: HTMLSelectElement;
+  readonly #mover = h("p", { id: "take-mover", class: "fine" });
   readonly #rooms: HTMLInputElement;
   readonly #known = h("datalist", { id: "take-rooms" });
   #now: Wanted;
@@ -48,14 +50,14 @@ export class ScriptEditor {
   /** `played` is told of the take that was begun; `left` when all stays as it is. */
   static async open(story: Story, played: Played, left: () => void): Promise<ScriptEditor> {
     const [words, home] = await Promise.all([Vocabulary.load(), getHome(story.id)]);
-    return new ScriptEditor(story, words, words.things(home), played, left);
+    return new ScriptEditor(story, words, words.things(home, roomNames(story)), played, left);
   }
 
   private constructor(story: Story, words: Vocabulary, things: readonly Thing[], played: Played, left: () => void) {
     [this.#story, this.#words, this.#things, this.#played, this.#left] = [story, words, things, played, left];
     this.#now = this.#before = { script: draftOf(story.keyframes), seed: String(story.seed), backend: story.backend, rooms: "" };
     this.#seed = h("input", { id: "take-seed", type: "number", min: 0, step: 1, inputmode: "numeric", oninput: () => (this.#play.disabled = this.#from({ ...this.#now, seed: this.#seed.value }) === null), onchange: () => this.#stage({ seed: this.#seed.value }) });
-    this.#backend = h("select", { id: "take-backend", onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.backend)));
+    this.#backend = h("select", { id: "take-backend", "aria-describedby": this.#mover.id, onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.about.split(/ ?[(:]/, 1)[0])));
     this.#rooms = h("input", { id: "take-home", class: "home", list: "take-rooms", placeholder: "its own home", autocomplete: "off", spellcheck: false, onfocus: () => void this.#name(), oninput: () => (this.#play.disabled = false), onchange: () => this.#stage({ rooms: this.#rooms.value.trim() }) });
     const upload = new Upload((ids) => this.#stage({ rooms: ids.join(", ") }));
     const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Leave it");
@@ -64,6 +66,7 @@ export class ScriptEditor {
       h("div", { class: "row editor-head" }, h("h2", {}, "Change the script"), leave),
       this.#list,
       h("div", { class: "staging" }, staged("Seed", this.#seed), staged("Moved by", this.#backend), staged("Played in", this.#rooms, this.#known)),
+      this.#mover,
       upload.element,
       h("div", { class: "editor-foot" }, this.#problem, h("div", { class: "row" }, this.#play, this.#undo)),
     );
@@ -116,6 +119,8 @@ export class ScriptEditor {
     fill(this.#list, ...this.#now.script.map((draft, at) => this.#row(draft, at)));
     this.#seed.value = this.#now.seed;
     this.#backend.value = this.#now.backend;
+    const { about = "" } = this.#words.backends.find((one) => one.backend === this.#backend.value) ?? {};
+    this.#mover.textContent = about && `Moved by ${about}.`;
     this.#rooms.value = this.#now.rooms;
     const untouched = this.#from() === null;
     this.#undo.disabled = this.#past.length === 0 && !this.#story.derived_from;
@@ -261,9 +266,4 @@ export class ScriptEditor {
 /** What a take is made with, and its name beside it. */
 function staged(name: string, control: HTMLElement, ...more: HTMLElement[]): HTMLElement {
   return h("div", { class: "staged" }, h("label", { for: control.id }, name), control, ...more);
-}
-
-/** Makes a post that is tried again the same post. */
-function newKey(): string {
-  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
 }

@@ -77,7 +77,7 @@ export class SideBySide {
     const { story, film, head, facts } = side;
     fill(head, h("a", { href: `#/stories/${story.id}` }, takeWords(story)), ` · ${story.backend}, seed ${story.seed}`);
     if (story.title) this.#title.textContent = `${story.title}, side by side`;
-    if (story.report) fill(facts, story.beats.length ? h("p", {}, beatsWords(story.beats)) : null, figureList(story.report), moverList(phasesOf(story.report)));
+    if (story.report) fill(facts, story.beats.length ? h("p", {}, beatsWords(story.beats)) : null, figureList(story.report), moverList(phasesOf(story.report), story.report.moved_by));
     film.update(story);
     const again = (): void => void this.#refresh(side);
     const making = story.state === "queued" || story.state === "running";

@@ -1,6 +1,6 @@
 /** The theme box: what shall be played, by whom and where; what is wrong is said at the field it is about. */
 
-import { ApiError, getCast, postStory, type NewStory, type Story } from "./api";
+import { ApiError, getCast, newKey, postStory, type NewStory, type Story } from "./api";
 import { fill, h } from "./dom";
 import { announce } from "./live";
 import { capital } from "./words";
@@ -222,9 +222,4 @@ function choices(name: string, items: readonly (readonly [string, string])[], ty
 function sentence(text: string): string {
   const trimmed = capital(text.trim().replace(/^Input should/, "This should"));
   return /[.!?…]$/.test(trimmed) ? trimmed : `${trimmed}.`;
-}
-
-/** Makes a post that is tried again the same post. randomUUID is missing where the page is not served securely. */
-function newKey(): string {
-  return Array.from(crypto.getRandomValues(new Uint8Array(16)), (byte) => byte.toString(16).padStart(2, "0")).join("");
 }

@@ -75,9 +75,9 @@ export class Vocabulary {
     return this.#skills.get(skill)?.needs ?? null;
   }
 
-  /** All that can be named in a home, room after room. */
-  things(home: Home): Thing[] {
-    const all = home.rooms.flatMap(({ layout }, place) => layout.objects.map(({ id, category, position }) => ({ id: `${place}/${id}`, category, room: plain(layout.room_type), near: position[1] < REACH })));
+  /** All that can be named in a home, room after room; `rooms` are what those are called in the story. */
+  things(home: Home, rooms: readonly string[]): Thing[] {
+    const all = home.rooms.flatMap(({ layout }, place) => layout.objects.map(({ id, category, position }) => ({ id: `${place}/${id}`, category, room: rooms[place] ?? plain(layout.room_type), near: position[1] < REACH })));
     const names = namesIn(all);
     return all.map(({ id, category, room, near }) => ({ id, name: names.get(id) ?? nameOf(category), room, near, affords: this.#affords.get(category) ?? [] }));
   }

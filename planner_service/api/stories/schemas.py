@@ -237,7 +237,7 @@ class KeyframeShown(BaseModel):
     caption: str
     furniture: str
     object_id: str | None = Field(description='"room_index/object_id" in the home.')
-    room: RoomType | None
+    room: str | None = Field(description="Where the body is; before a home is found, what is asked for.")
     start: int | None = Field(description="First frame.")
     end: int | None = Field(description="Behind the last frame.")
     short_script_id: str | None = Field(description="Where it comes from; null for a connecting keyframe.")

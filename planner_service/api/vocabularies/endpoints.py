@@ -10,9 +10,11 @@ from motion_backend.backends import about, offered_backends
 from motion_backend.emotion_words import naming_words
 from motion_backend.motion import Emotion, Skill
 from planner_service.api.dependencies import PartsDep
+from planner_service.api.errors import Unprocessable
 from planner_service.api.vocabularies.schemas import (
     BackendList,
     BackendShown,
+    CaptionExample,
     CaptionList,
     CaptionShown,
     EmotionList,
@@ -44,6 +46,19 @@ async def list_captions(skill: Skilled = None, q: Words = "") -> CaptionList:
             for one in find_captions(q, skill)
         ]
     )
+
+
+@vocabularies_router.get("/captions/example", response_model=CaptionExample)
+def show_caption(skill: SkillWord, caption: Annotated[str, Query(max_length=200)]) -> CaptionExample:
+    """A caption to be seen: a room of the library that has what it needs, and the keyframes that lead up to it."""
+    if caption not in captions()[skill]:
+        raise Unprocessable("?caption", f"{caption!r} is no caption of {skill}; GET /v1/captions lists them")
+    # Only who looks at one pays for the body's modules.
+    from planner_service.evaluation.trials import keyframes_of
+    from planner_service.output.caption_sheets import trial_of
+
+    trial = trial_of(Skill(skill), caption, None, 0)
+    return CaptionExample(layout_id=trial.room, keyframes=list(keyframes_of(trial)))
 
 
 @vocabularies_router.get("/emotions", response_model=EmotionList)

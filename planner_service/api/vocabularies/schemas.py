@@ -5,6 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel, Field
 
 from motion_backend.motion import Emotion, Skill
+from planner_service.scripts.script import Keyframe
 
 
 class CaptionShown(BaseModel):
@@ -20,6 +21,13 @@ class CaptionList(BaseModel):
     """Captions that the body performs each in its own way."""
 
     items: list[CaptionShown]
+
+
+class CaptionExample(BaseModel):
+    """What acts one caption out, as it can be posted to /v1/motions; the caption is the last keyframe's."""
+
+    layout_id: str
+    keyframes: list[Keyframe]
 
 
 class EmotionShown(BaseModel):

@@ -47,9 +47,16 @@ def test_a_limit_itself_is_kept_and_what_is_beyond_is_missed() -> None:
 
 
 def test_a_figure_without_a_value_has_no_row() -> None:
-    limits = [Limit("here", most=1.0), Limit("far", least=2.0), Limit("absent", most=1.0), Limit("none", most=1.0)]
-    rows = held_against({"here": 1.0, "far": 1.5, "none": None, "more": 3.0}, limits)
+    limits = [Limit("slip", most=1.0), Limit("success", least=0.9), Limit("pen_max", most=1.0), Limit("jerk", most=1.0)]
+    rows = held_against({"slip": 1.0, "success": 0.5, "jerk": None, "more": 3.0}, limits)
     assert rows == [
-        {"figure": "here", "value": 1.0, "least": None, "most": 1.0, "kept": True},
-        {"figure": "far", "value": 1.5, "least": 2.0, "most": None, "kept": False},
+        {"figure": "slip", "value": 1.0, "least": None, "most": 1.0, "kept": True, "words": None},
+        {
+            "figure": "success",
+            "value": 0.5,
+            "least": 0.9,
+            "most": None,
+            "kept": False,
+            "words": "not every moment was done: 50.0 % of them were, at least 90",
+        },
     ]

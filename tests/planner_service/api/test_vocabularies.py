@@ -60,3 +60,26 @@ async def test_every_word_of_a_keyframe_can_be_looked_up(app: FastAPI) -> None:
         assert [one["backend"] for one in await items("backends") if one["default"]] == ["procedural"]
         problem = check_problem(await client.get("/v1/captions?skill=hop"), 422)
     assert problem["errors"][0]["pointer"] == "?skill"
+
+
+@pytest.mark.parametrize(
+    ("skill", "caption"),
+    [("touch", "pouring with the right hand"), ("sit down", "writing at the table, right hand moving")],
+)
+async def test_a_caption_is_shown_by_keyframes_that_can_be_posted_as_they_are(
+    app: FastAPI, skill: str, caption: str
+) -> None:
+    async with calling(app) as client:
+        answer = await client.get("/v1/captions/example", params={"skill": skill, "caption": caption})
+        assert answer.status_code == 200, answer.text
+        example = answer.json()
+        assert example["keyframes"][-1]["caption"] == caption
+        posted = await client.post("/v1/motions", json=example)
+        assert posted.status_code == 202, posted.text
+
+
+async def test_a_caption_of_another_skill_has_no_example(app: FastAPI) -> None:
+    async with calling(app) as client:
+        asked = {"skill": "liedown", "caption": "clapping hands"}
+        problem = check_problem(await client.get("/v1/captions/example", params=asked), 422)
+    assert problem["errors"][0]["pointer"] == "?caption"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,7 @@ from typer.testing import CliRunner
 
 from planner_service.cli import app
 from planner_service.cli.record_command import read_lines
+from planner_service.cli.service import EXTRAS
 from planner_service.pipeline import RequestError
 
 RUN = CliRunner()
@@ -56,3 +59,27 @@ def test_a_recording_wants_a_model_and_themes(tmp_path: Path) -> None:
     themes.write_text("# nothing")
     with pytest.raises(RequestError, match="0 themes"):
         read_lines(themes)
+
+
+@for_each(
+    ("command", "extras"),
+    [
+        ("mcp", {"mcp"}),
+        ("story", {"video", "usd", "llm"}),
+        ("play", {"video", "usd"}),
+        ("extract", {"video", "asr", "llm"}),
+        ("scripts imitate", {"llm"}),
+        ("models check", {"llm"}),
+    ],
+)
+def test_help_names_every_extra_that_a_command_needs_and_how_it_is_installed(command: str, extras: set[str]) -> None:
+    # Long words are broken at hyphens.
+    said = "".join(RUN.invoke(app, [*command.split(), "--help"]).output.split())
+    named = set(re.findall(r"\w+", ",".join(re.findall(r'pipinstall"sims-stories\[([\w,]+)\]"', said))))
+    assert extras <= named, said
+    assert named <= set(EXTRAS)
+
+
+def test_every_extra_that_is_not_for_developers_is_listed() -> None:
+    project = tomllib.loads((Path(__file__).parents[3] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert set(EXTRAS) == set(project["optional-dependencies"]) - {"dev", "docs"}

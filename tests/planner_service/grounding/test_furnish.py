@@ -11,7 +11,7 @@ import pytest
 
 from motion_backend.motion import Skill
 from planner_service.api.stories.schemas import HomeShown
-from planner_service.grounding.furnish import FurnishError, furnish
+from planner_service.grounding.furnish import FurnishError, called, furnish
 from planner_service.grounding.object_assignment import usable_offers
 from planner_service.jobs import serialization
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
@@ -264,3 +264,50 @@ def test_a_chair_a_step_from_its_table_is_drawn_up_for_a_meal_and_for_nothing_el
         assert any("drawn up to its table" in line for line in stage.explain()) == drawn
         again = serialization.furnished_from_dict(json.loads(json.dumps(serialization.furnished_to_dict(stage))))
         assert again.matches == stage.matches
+
+
+BEDSIT = Layout(
+    "mine",
+    "bedroom",
+    ((0.0, 0.0), (0.0, 5.0), (5.0, 5.0), (5.0, 0.0)),
+    objects=(
+        Placed("bed", "single_bed", (4.2, 0.0, 1.2), (1.1, 0.6, 2.0)),
+        Placed("desk", "desk", (1.5, 0.0, 0.5), (1.4, 0.75, 0.7)),
+        Placed("seat", "office_chair", (1.5, 0.0, 1.6), (0.5, 0.9, 0.5), pi),
+    ),
+    tags=("bedroom", "study"),
+)
+
+
+@pytest.mark.parametrize("asked", [("study",), ("dining_room",), ("study", "bedroom"), ("bedroom", "study")])
+def test_a_room_with_a_bed_is_called_a_bedroom_wherever_a_story_names_it(asked: tuple[str, ...]) -> None:
+    rows = [("liedown", "bed", room) if room == "bedroom" else ("touch", "desk", room) for room in asked]
+    made = script(*rows)
+    bare = tuple(keyframe.model_copy(update={"short_script": None}) for keyframe in made.keyframes)
+    found = furnish(made.model_copy(update={"keyframes": bare}), index(), given=[BEDSIT])
+    shown = serialization.summary_of_home(found)
+    assert [match.room_type for match in found.matches] == ["bedroom"]
+    assert {room for _, room in found.names.values()} == {"bedroom"}
+    assert {keyframe["room"] for keyframe in shown["keyframes"]} == {"bedroom"}
+    assert {node["room"] for node in shown["graph"]["nodes"]} == {"bedroom"}
+    (line,) = found.explain()
+    assert line.startswith("bedroom: mine")
+    others = sorted(set(asked) - {"bedroom"})
+    assert (f"where the script asks for a {others[0].replace('_', ' ')}" in line) is bool(others)
+
+
+@pytest.mark.parametrize(
+    ("own", "tags", "asked", "name"),
+    [
+        ("living_room", ("living_room", "dining_room"), ["dining_room"], "dining_room"),
+        ("living_room", ("living_room", "dining_room"), ["dining_room", "living_room"], "living_room"),
+        ("living_room", ("living_room",), ["dining_room"], "living_room"),
+        ("kitchen", ("kitchen",), ["dining_room"], "kitchen"),
+        ("bedroom", ("bedroom", "study"), ["study"], "bedroom"),
+        ("study", ("study",), [], "study"),
+    ],
+)
+def test_a_room_is_called_what_it_is_or_serves_and_never_what_it_is_not(
+    own: str, tags: tuple[str, ...], asked: list[str], name: str
+) -> None:
+    assert called(replace(DINING, room_type=own, tags=tags), asked) == name

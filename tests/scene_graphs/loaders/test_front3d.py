@@ -205,12 +205,13 @@ def test_a_raw_model_gives_a_piece_its_shape_turned_and_mirrored_with_it(
         ("Library", ("study",)),
         ("MasterBathroom", ("master_bathroom",)),
         ("KidsRoom", ("kids_room", "bedroom")),
-        ("none", ("other_room",)),
-        (None, ("other_room",)),
+        ("none", ("bedroom",)),
+        (None, ("bedroom",)),
+        ("OtherRoom", ("bedroom",)),
         ("../\x1b[1m", ("1m",)),
     ],
 )
-def test_room_types_are_ours_where_there_is_one(kind: Any, tags: tuple[str, ...]) -> None:
+def test_a_room_is_what_its_own_word_says_or_what_its_furniture_makes_it(kind: Any, tags: tuple[str, ...]) -> None:
     house = small_house()
     house["scene"]["room"][0]["type"] = kind
     assert only(house).tags == tags

@@ -65,6 +65,7 @@ def test_a_room_is_what_its_file_or_its_furniture_says() -> None:
     assert likely_room("scene", ["desk", "double_bed"]) == "bedroom"
     assert likely_room("scene", ["desk", "multi_seat_sofa"]) == "living_room"
     assert likely_room("scene", ["dining_table", "refrigerator"]) == "kitchen"
+    assert likely_room("scene", ["dining_table", "single_bed", "toilet"]) == "bedroom"
     assert likely_room("scene", ["rug"]) == "room"
 
 
