@@ -104,8 +104,8 @@ def file_figures(pipeline: Pipeline, folder: Path) -> list[Figure]:
     _, drawing = timed(
         lambda: storyboard(planned.home, story.motion, planned.script.keyframes, folder / "board.png", "", targets)
     )
-    filmed, filming, worked = _film(story, minute, folder)
-    speed = f"{minute.duration / filming:.1f} times as fast as it plays, {worked:.0f} s of one core"
+    filmed, filming, worked, shown = _film(story, minute, folder)
+    speed = f"{shown:.0f} s of film, {shown / filming:.1f} times as fast as it plays, {worked:.0f} s of one core"
     length = f"the first minute of {story.motion.duration:.0f} s, {len(planned.home.rooms)} rooms"
     looks = f"{length}; with the body built; once it is, {1000 * again:.0f} ms"
     return [
@@ -123,14 +123,14 @@ def file_figures(pipeline: Pipeline, folder: Path) -> list[Figure]:
     ]
 
 
-def _film(story: Story, part: Motion, folder: Path) -> tuple[float, float, float]:
-    """Megabytes of a film of the beginning of a story, seconds it took, and seconds of one core."""
+def _film(story: Story, part: Motion, folder: Path) -> tuple[float, float, float, float]:
+    """Megabytes of a film of the beginning of a story, seconds it took, seconds of one core, and how long it is."""
     compile_film()
     cut = tuple((min(start, len(part)), min(stop, len(part))) for start, stop in story.segments)
     filmed = Filmed(story.planned.home, part, story.planned.told, cut, story.role)
     before = time.process_time()
     path, seconds = timed(lambda: write_film(filmed, folder / "film.mp4"))
-    return path.stat().st_size / 1e6, seconds, time.process_time() - before
+    return path.stat().st_size / 1e6, seconds, time.process_time() - before, len(filmed.edit) / part.fps
 
 
 def quality(report: dict[str, Any]) -> tuple[float, float, float, float, float]:

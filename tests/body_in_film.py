@@ -45,11 +45,11 @@ def body_shares(film: Sequence[Planes], filmed: Filmed, every: int) -> dict[int,
     acting = Acting.of(filmed.motion, filmed.role)
     starts = [start for start, _ in filmed.segments]
     shares = {}
-    for shot in film_shots(filmed.home, filmed.motion, starts, width / height, filmed.role):
+    for shot in film_shots(filmed.home, filmed.motion, starts, width / height, filmed.role, filmed.edit):
         if frames := range(shot.start + -shot.start % every, shot.stop, every):
             backdrop = Backdrop.of(shot.scene, shot.camera, (width, height))
             for frame, body in zip(frames, acting.solids(frames), strict=True):
-                shares[frame] = _share(film[frame], backdrop, body)
+                shares[frame] = _share(film[filmed.edit.frame(frame)], backdrop, body)
     return shares
 
 

@@ -2,6 +2,6 @@
 
 from motion_backend.props.prop_shapes import PropShape, prop_shape
 from motion_backend.props.prop_table import Held, held_in
-from motion_backend.props.prop_tracks import PropTrack, prop_tracks
+from motion_backend.props.prop_tracks import PropTrack, prop_points, prop_tracks
 
-__all__ = ["Held", "PropShape", "PropTrack", "held_in", "prop_shape", "prop_tracks"]
+__all__ = ["Held", "PropShape", "PropTrack", "held_in", "prop_points", "prop_shape", "prop_tracks"]

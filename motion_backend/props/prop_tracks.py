@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from motion_backend.body.cast import Role
 from motion_backend.motion import Motion
 from motion_backend.props.prop_hands import Hands
+from motion_backend.props.prop_shapes import prop_shape
 from motion_backend.props.prop_table import Held, held_in
 from motion_backend.rotations import Array
 
@@ -139,3 +140,14 @@ def _tracks(hands: Hands, held: Held, there: NDArray[np.bool_]) -> Iterator[Prop
             positions, turns, size = hands.placed(grip, start, stop)
             palm = hands.palms[start:stop, 0 if grip.hand == "left" else 1]
             yield PropTrack(grip.prop, start, palm + share[:, None] * (positions - palm), turns, size * share)
+
+
+def prop_points(tracks: Sequence[PropTrack], frame: int) -> Array:
+    """The vertices of all that is in the hands at a frame, in the world. (N, 3)."""
+    points = [np.zeros((0, 3))]
+    for track in tracks:
+        if track.start <= frame < track.stop:
+            now = frame - track.start
+            shape = prop_shape(track.prop)
+            points.append(shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))[0])
+    return np.concatenate(points).astype(np.float64)

@@ -14,6 +14,8 @@ import numpy as np
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Emotion, Motion, PhaseKind
+from motion_backend.props import PropTrack
+from motion_backend.rendering.film_edit import FilmEdit, Frames
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
@@ -31,6 +33,8 @@ STILL: Final = 0.3
 """Metres that a face moves in that while: a camera that stands still would lose it."""
 HELD: Final = 0.5
 """The same of a hand that touches."""
+IN_HAND: Final = 0.25
+"""Metres from the middle of a thing to a wrist that has a part in holding it."""
 TO_HEAD: Final = 0.30
 """Metres between a wrist and the head of who telephones, drinks or eats."""
 HANDS: Final = (INDEX["left_wrist"], INDEX["right_wrist"])
@@ -69,34 +73,46 @@ class Cut:
     close: Framing | None = None
 
 
-def film_cuts(motion: Motion, joints: Array, starts: Sequence[int], role: Role = PLAIN) -> Iterator[Cut]:
-    """All of a motion, whose joints are (T, 22, 3) in the world and whose actions begin at `starts`."""
-    finder = _Finder(motion, joints, role.emotions, role.asleep)
+def film_cuts(
+    motion: Motion,
+    joints: Array,
+    starts: Sequence[int],
+    role: Role = PLAIN,
+    edit: FilmEdit | None = None,
+    props: Sequence[PropTrack] = (),
+) -> Iterator[Cut]:
+    """What an edit keeps of a motion, or all, whose joints are (T, 22, 3) in the world and whose actions begin at
+    `starts`; `props` are in its hands."""
+    finder = _Finder(motion, joints, role.emotions, role.asleep, tuple(props))
     seen: Emotion | None = None
     before: Framing | None = None
-    for start, stop in _windows(motion, starts):
+    kept = (edit or FilmEdit.whole(len(motion))).kept
+    for start, stop in (window for part in kept for window in _windows(motion, starts, part)):
         mood = finder.mood((start + stop) // 2)
         close = finder.close_up(start, stop, mood is not seen)
         if close is not None and before is not None:
             # Two in a row would leave no one know where all this is; what the head does is a matter of now and then.
             rest = (close.start - before.stop) / motion.fps
-            if rest <= 0 or (close.subject is Subject.FACE and mood is seen and rest < AGAIN):
+            again = mood is seen if close.subject is Subject.FACE else before.subject is Subject.HANDS
+            if rest <= 0 or (again and rest < AGAIN):
                 close = None
         yield Cut(start, stop, close)
         before = close or before
         seen = mood if close is not None and close.subject is Subject.FACE else seen
 
 
-def _windows(motion: Motion, starts: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """Frames between cuts: at every action, where walking ends, and where one shot would be too long or go too far."""
+def _windows(motion: Motion, starts: Sequence[int], part: Frames) -> Iterator[Frames]:
+    """Frames between cuts in a part of a motion: at every action, where walking ends, and where one shot would be too
+    long or go too far."""
+    first, last = part
     shortest = round(SHORTEST * motion.fps)
     walks = [p for p in motion.phases if p.kind is PhaseKind.WALK]
-    edges = sorted({0, len(motion), *starts, *(p.start for p in walks), *(p.stop for p in walks)})
-    cuts = [0]
-    for edge in edges[1:-1]:
-        if min(edge - cuts[-1], len(motion) - edge) >= shortest:
+    edges = sorted({*starts, *(p.start for p in walks), *(p.stop for p in walks)})
+    cuts = [first]
+    for edge in edges:
+        if min(edge - cuts[-1], last - edge) >= shortest:
             cuts.append(edge)
-    for start, stop in pairwise([*cuts, len(motion)]):
+    for start, stop in pairwise([*cuts, last]):
         pieces = np.linspace(start, stop, _pieces(motion, start, stop) + 1).round().astype(int)
         yield from pairwise(pieces.tolist())
 
@@ -115,14 +131,16 @@ class _Finder:
     joints: Array
     emotions: Mapping[int, Emotion]
     asleep: frozenset[int]
+    props: tuple[PropTrack, ...]
 
     def mood(self, frame: int) -> Emotion:
         """That of the keyframe a frame serves."""
         return self.emotions.get(int(self.motion.actions[frame]), Emotion.NEUTRAL)
 
     def close_up(self, start: int, stop: int, changed: bool) -> Framing | None:
-        """The hand where something is touched, else the face where the mood is another or the head is what matters."""
-        return self._touch(start, stop) or self._face(start, stop, changed)
+        """The hand where something is touched, else the face where the mood is another or the head is what matters,
+        else the hands in which something is."""
+        return self._touch(start, stop) or self._face(start, stop, changed) or self._held(start, stop)
 
     def _touch(self, start: int, stop: int) -> Framing | None:
         touches = [p for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop and p.stop > start]
@@ -157,6 +175,20 @@ class _Finder:
         middle = start + 5 * int(np.argmin(moved)) + long // 2
         hands = tuple(np.asarray(HANDS)[busy].tolist())
         return self._around(start, stop, middle, Subject.FACE, hands, STILL)
+
+    def _held(self, start: int, stop: int) -> Framing | None:
+        """The hands, where something is in them for most of a while."""
+        for track in self.props:
+            first, last = max(start, track.start), min(stop, track.stop)
+            if last - first < CLOSE_SECONDS * self.motion.fps:
+                continue
+            there = track.positions[first - track.start : last - track.start]
+            away = np.linalg.norm(self.joints[first:last, HANDS] - there[:, None], axis=-1).mean(axis=0)
+            hands = tuple(np.asarray(HANDS)[away < max(IN_HAND, away.min() + 1e-6)].tolist())
+            found = self._around(start, stop, (first + last) // 2, Subject.HANDS, hands, HELD)
+            if found is not None and first <= found.start and found.stop <= last:
+                return found
+        return None
 
     def _around(
         self, start: int, stop: int, middle: int, subject: Subject, hands: tuple[int, ...], most: float

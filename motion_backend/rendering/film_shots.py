@@ -1,14 +1,15 @@
 """A motion as a film's shots: a camera that stands still and sees what is done until the next cut, near or far.
 
-Views are scored by what can be told quickly, then looked through in that order: the first is taken in which nothing
-hides what it is about for more than a moment. What is seen from near stands between two parts of one shot of the whole.
+Views are scored by what can be told quickly; of the best of them small pictures are looked at, and the one is taken in
+which nothing hides what it is about for more than a moment, and that shows it best. What is seen from near stands
+between two parts of one shot of the whole.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +17,17 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion
+from motion_backend.props import PropTrack, prop_points, prop_tracks
 from motion_backend.rendering.camera import FOV, YAWS, Shot, liking
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
+from motion_backend.rendering.film_edit import FilmEdit
 from motion_backend.rendering.film_entrance import Entrance
+from motion_backend.rendering.film_outlook import Outlook
 from motion_backend.rendering.film_set import FilmSet
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import Solid
-from motion_backend.rotations import Array, wrap
+from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
 if TYPE_CHECKING:
@@ -43,17 +47,18 @@ FRAME: Final = 0.84
 """The share of a picture that all of a body keeps within."""
 SAMPLES: Final = 5
 """Frames of a shot that are looked at."""
-ALIKE: Final = 0.5
-"""Radians; two cameras that differ by less look like a mistake and not like a cut."""
+ALIKE, AS_NEAR = np.radians(30.0), 1.4
+"""Two cameras whose directions differ by less, and whose distances by no more than this factor, look like a mistake and
+not like a cut."""
 MARGIN: Final = 0.12
 """Metres around joints that skin and hair reach."""
 FINGERS, CROWN = 0.17, 0.16
 """Metres that a hand reaches beyond its wrist, and a head beyond its joint."""
-FAR: Final = 0.08
+FAR: Final = 0.14
 """What a metre of distance counts: faces are seen from near."""
-REPEATED: Final = 0.6
+REPEATED: Final = 1.6
 """What a jump cut counts."""
-REVERSED: Final = 0.4
+REVERSED: Final = 0.9
 """What it counts to go on from the other side, where who went to the right goes to the left."""
 SIDE: Final = 0.3
 """From how much of a body's turn across the picture on it has a side."""
@@ -63,12 +68,16 @@ WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
 """The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
 ALONG: Final = 0.8
 """What it counts to look along an arm, of which then nothing is seen."""
+STEEP, LIES = (1.0, 0.3), 0.5
+"""What a radian from above counts from near, of who is upright and of who lies: whose head's up is less than that."""
 FROM_INSIDE: Final = 1.0
 """What it counts to be in the room, from near."""
 AT_DOOR: Final = 3.0
 """What it counts in the first shot to see the door by which somebody comes in."""
-TRIES: Final = 12
-"""Views of a shot that are looked through."""
+TO_WINDOW: Final = 4.0
+"""What it counts to see the window that somebody looks out of."""
+TRIES: Final = 8
+"""Views of a shot of which pictures are looked at."""
 
 
 @dataclass(frozen=True)
@@ -84,26 +93,28 @@ class FilmShot:
 
 
 def film_shots(
-    home: Home, motion: Motion, starts: Sequence[int], aspect: float, role: Role = PLAIN
+    home: Home, motion: Motion, starts: Sequence[int], aspect: float, role: Role = PLAIN, edit: FilmEdit | None = None
 ) -> Iterator[FilmShot]:
-    """The shots of a whole motion whose actions begin at these frames; pictures are `aspect` times as wide as high.
+    """The shots of a motion whose actions begin at these frames, all of it or what an edit keeps; pictures are `aspect`
+    times as wide as high.
 
     Each is chosen when it is asked for, while the one before is being drawn. The role says where moods change.
     """
     positions, turns = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
     joints = positions.astype(np.float64)
-    director = _Director(motion, joints, turns, FilmSet.of(home), aspect)
-    before: Camera | None = None
-    for cut in film_cuts(motion, joints, starts, role):
+    props = prop_tracks(motion, role)
+    director = _Director(motion, joints, turns, FilmSet.of(home), aspect, props)
+    before: FilmShot | None = None
+    for cut in film_cuts(motion, joints, starts, role, edit, props):
         whole = director.shot(cut.start, cut.stop, before)
         for part in _parts(cut, whole, director):
             yield part
-            before = part.camera
+            before = part
 
 
 def _parts(cut: Cut, whole: FilmShot, director: _Director) -> Iterator[FilmShot]:
     """A shot of the whole, with what is worth it seen from near, if any camera sees that."""
-    close = director.close_up(cut.close, whole.camera) if cut.close is not None else None
+    close = director.close_up(cut.close, whole) if cut.close is not None else None
     if close is None:
         yield whole
         return
@@ -125,43 +136,47 @@ class _Director:
     """Their rotations. (T, 22, 4)."""
     set: FilmSet
     aspect: float
+    props: tuple[PropTrack, ...]
+    """What is in the hands."""
 
-    def shot(self, start: int, stop: int, before: Camera | None) -> FilmShot:
+    def shot(self, start: int, stop: int, before: FilmShot | None) -> FilmShot:
         """The best view, unlike the one before, in which the body is hidden for no more than a moment, else least."""
         return self._best(Framing(start, stop), self._views(start, stop, before))[0]
 
-    def close_up(self, close: Framing, before: Camera) -> FilmShot | None:
-        """The same from near; None where something hides it from all cameras, or is in the way of all."""
-        views = self._near(close, before)
+    def close_up(self, close: Framing, before: FilmShot) -> FilmShot | None:
+        """The same from near; None where something hides it from all cameras, or is in the way of all, and of who
+        looks out of a window, which would not be seen."""
+        views = [] if self._outlook(close.start, close.stop) is not None else self._near(close, before)
         if not views:
             return None
         shot, enough = self._best(close, views)
         return shot if enough else None
 
-    def _best(self, framing: Framing, views: Sequence[Camera]) -> tuple[FilmShot, bool]:
-        """The first of some views that shows enough, else the one that shows most; and whether it is enough."""
+    def _best(self, framing: Framing, views: Sequence[_View]) -> tuple[FilmShot, bool]:
+        """Of some views, the best first, the one that makes the best picture of those that show enough, else the one
+        that shows most; and whether it is enough."""
         start, stop = framing.start, framing.stop
-        bodies = Appearances.of(self.motion, framing, self.aspect)
-        best, most = None, -np.inf
-        for camera in views[:TRIES]:
-            scene = self.set.seen(camera, self.joints[start:stop])
-            found = FilmShot(start, stop, camera, scene, framing.subject)
-            shown = bodies.shown(found.scene, camera)
-            if shown > most:
-                best, most = found, shown
-            if bodies.enough(shown):
-                break
-        assert best is not None
-        return best, bodies.enough(most)
+        bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
+        found: list[tuple[tuple[bool, float], FilmShot]] = []
+        for view in views[:TRIES]:
+            scene = self.set.seen(view.camera, self.joints[start:stop])
+            look = bodies.look(scene, view.camera)
+            rank = (look.enough, view.score + look.appeal if look.enough else look.shown)
+            found.append((rank, FilmShot(start, stop, view.camera, scene, framing.subject)))
+        (enough, _), best = max(found, key=lambda one: one[0])
+        return best, enough
 
-    def _views(self, start: int, stop: int, before: Camera | None) -> list[Camera]:
-        """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet."""
+    def _views(self, start: int, stop: int, before: FilmShot | None) -> list[_View]:
+        """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet, with the
+        door that it comes in by or the window that it looks out of."""
         frames = _sampled(start, stop)
         poses = self.joints[frames]
-        entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
-        points = poses.reshape(-1, 3)
-        if entrance is not None:
-            points = np.concatenate([points, entrance.corners])
+        shown: list[tuple[Entrance | Outlook | None, float]] = [
+            (Entrance.of(self.set.home, self.motion) if start == 0 else None, AT_DOOR),
+            (self._outlook(start, stop), TO_WINDOW),
+        ]
+        openings = [(one, worth) for one, worth in shown if one is not None]
+        points = np.concatenate([poses.reshape(-1, 3), *(one.corners for one, _ in openings)])
         sight = self.set.sight(_middle(points))
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
         scored = []
@@ -170,12 +185,15 @@ class _Director:
                 camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
                 score = float(liked[index]) + sight.score(camera, poses)
                 score -= FAR * _distance(camera)
-                if entrance is not None:
-                    score += AT_DOOR * sight.shows(camera, entrance.corners, entrance.side)
-                scored.append((score - self._broken(camera, before, start), camera))
+                score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
+                scored.append(_View(score - self._broken(camera, before, start), camera))
         return _sorted(scored)
 
-    def _near(self, close: Framing, before: Camera) -> list[Camera]:
+    def _outlook(self, start: int, stop: int) -> Outlook | None:
+        """The window that the body looks out of in some frames."""
+        return Outlook.of(self.set.home, self.motion, self.joints[start:stop], self.turns[start:stop])
+
+    def _near(self, close: Framing, before: FilmShot) -> list[_View]:
         """Cameras near a face, a quarter turned, or beside an arm that touches, with whose head and
         shoulders it is, best first; none is in furniture."""
         frames = _sampled(close.start, close.stop)
@@ -184,9 +202,12 @@ class _Director:
             poses[:, list(close.hands)].reshape(-1, 3) if close.subject is Subject.FACE else _arms(poses, close.hands)
         )
         # A hand without the one whose it is tells nothing of who does it, and how.
-        points = np.concatenate([_head(poses, turns), hands])
+        held = [prop_points(self.props, frame) for frame in frames.tolist()] if close.hands else []
+        points = np.concatenate([_head(poses, turns), hands, *held])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
+        upright = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
+        steep = STEEP[0 if upright else 1]
         scored = []
         for pitch in CLOSE_PITCHES:
             for yaw in YAWS.tolist():
@@ -196,21 +217,31 @@ class _Director:
                 towards = -camera.axes[2]
                 if float(np.mean(_turns(ahead, towards))) > WIDEST_NEAR[close.subject]:
                     continue
-                score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - 0.3 * pitch
+                score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * pitch
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score -= ALONG * max(abs(float(arm @ towards)) for arm in _directions(poses, close.hands))
-                scored.append((score - self._broken(camera, before, close.start), camera))
+                scored.append(_View(score - self._broken(camera, before, close.start), camera))
         return _sorted(scored)
 
-    def _broken(self, camera: Camera, before: Camera | None, frame: int) -> float:
+    def _broken(self, camera: Camera, before: FilmShot | None, frame: int) -> float:
         """What the rules of cutting count against a camera: no jump from nearly the same place, nobody turns round."""
         if before is None:
             return 0.0
-        ahead = rotations.rotate(self.turns[frame, 0], np.array([0.0, 0.0, 1.0]))
-        now, then = (float(ahead @ one.axes[0]) for one in (camera, before))
+        now, then = self._across(camera, frame), self._across(before.camera, before.stop - 1)
         turned = min(abs(now), abs(then)) > SIDE and now * then < 0
-        return REPEATED * _alike(camera, before) + REVERSED * turned
+        return REPEATED * are_alike(camera, before.camera) + REVERSED * turned
+
+    def _across(self, camera: Camera, frame: int) -> float:
+        """How far to the right of a picture the body is turned, -1 to 1."""
+        return float(rotations.rotate(self.turns[frame, 0], np.array([0.0, 0.0, 1.0])) @ camera.axes[0])
+
+
+class _View(NamedTuple):
+    """A camera, and how good it seems."""
+
+    score: float
+    camera: Camera
 
 
 def _sampled(start: int, stop: int) -> NDArray[np.int64]:
@@ -222,8 +253,8 @@ def _middle(points: Array) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _sorted(scored: Sequence[tuple[float, Camera]]) -> list[Camera]:
-    return [camera for _, camera in sorted(((round(score, 6), one) for score, one in scored), key=lambda two: -two[0])]
+def _sorted(views: Sequence[_View]) -> list[_View]:
+    return sorted(views, key=lambda view: -round(view.score, 6))
 
 
 def _head(poses: Array, turns: Array) -> Array:
@@ -273,6 +304,7 @@ def _distance(camera: Camera) -> float:
     return float(np.linalg.norm(np.subtract(camera.eye, camera.target)))
 
 
-def _alike(one: Camera, other: Camera) -> bool:
-    yaws = [float(np.arctan2(*np.subtract(c.eye, c.target)[[0, 2]])) for c in (one, other)]
-    return abs(float(wrap(np.array(yaws[0] - yaws[1])))) < ALIKE
+def are_alike(one: Camera, other: Camera) -> bool:
+    """Whether two cameras look from nearly the same side and from nearly as far: a cut between them would be a jump."""
+    ratio = _distance(one) / _distance(other)
+    return max(ratio, 1 / ratio) < AS_NEAR and float(one.axes[2] @ other.axes[2]) > np.cos(ALIKE)

@@ -1,4 +1,6 @@
-"""Whether a camera really sees a body, or furniture, lamps and walls hide it: by what is nearest in the picture."""
+"""Whether a camera really sees a body, or furniture, lamps and walls hide it, and how good a picture that makes: by
+what is nearest in the picture.
+"""
 
 from __future__ import annotations
 
@@ -13,6 +15,7 @@ from numpy.typing import NDArray
 from motion_backend.body.mannequin_mesh import build_mannequin
 from motion_backend.body.skinning import skin
 from motion_backend.motion import Motion
+from motion_backend.props import PropTrack, prop_points
 from motion_backend.rendering.film_cuts import Framing, Subject
 from motion_backend.rendering.rasterizer import Camera, Real
 from motion_backend.rendering.renderer import Solid, nearness_of
@@ -21,8 +24,10 @@ from motion_backend.skeleton import INDEX
 
 HEIGHT: Final = 120
 """Pixels of the picture that is looked at."""
-EVERY: Final = {Subject.BODY: 6, Subject.FACE: 16, Subject.HANDS: 16}
+EVERY: Final = {Subject.BODY: 8, Subject.FACE: 16, Subject.HANDS: 16}
 """Frames between two looks; from near little happens."""
+SPARSE: Final = 3
+"""Of how many vertices one is asked whether it is seen."""
 SLACK: Final = {Subject.BODY: 0.06, Subject.FACE: 0.06, Subject.HANDS: 0.015}
 """Metres that a body may be behind what hides it: it sinks into cushions, and pixels are large; a hand round a corner
 is hidden by it."""
@@ -37,8 +42,41 @@ CROWDED: Final = 0.12
 """The share of a picture that may be of what is much nearer than the body: a wall, the back of a screen."""
 MUCH: Final = 0.6
 """From which share of the way to the body on nothing is much nearer."""
+APPEALS: Final = (2.0, 1.2, 1.2)
+"""What it counts to see all of the near side of a body, of its head or hands, and of what is held."""
+BEFORE: Final = 0.86
+"""Up to which share of the way to the body something is in the foreground,"""
+LOW, TALL = 0.3, 0.8
+"""from which height on (metres), and from which wholly: a rug is not, a bed hardly, a wardrobe is."""
+FOREGROUND: Final = 4.0
+"""What it counts to have nothing but foreground in the picture."""
+RING: Final = (1.15, 2.3)
+"""From how many radii of a head on, and up to how many, what is behind it is looked at,"""
+CHIN: Final = 0.4
+"""and how many below its middle."""
+JUMP: Final = 0.08
+"""The share of its distance by which one thing is nearer than what is beside it: there is an edge between them."""
+CLUTTERED: Final = 0.2
+"""The share of edges about a head from which on it is in a clutter: a lampshade stands on it like a hat."""
+CLUTTER: Final = 0.9
+"""What that counts."""
 LEGS: Final = tuple(INDEX[f"{side}_{name}"] for side in ("left", "right") for name in ("hip", "knee", "ankle", "foot"))
 """What crowds a picture of a face as furniture does, at any distance: the knees of who sleeps curled up."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """What a camera shows of some bodies."""
+
+    shown: float
+    """The share of frames in which enough of the body and its part is seen; less where the picture is crowded."""
+    appeal: float
+    """How much of them is seen, in what surroundings: counts as the scores of `camera` do."""
+
+    @property
+    def enough(self) -> bool:
+        """Whether the bodies are hidden for no more than a moment."""
+        return self.shown >= ENOUGH
 
 
 @dataclass(frozen=True)
@@ -53,6 +91,8 @@ class Appearances:
     """How much skin is around each vertex. (V,)."""
     part: NDArray[np.bool_]
     """Which vertices are the head's, or of hands that are looked at the hands'. (V,)."""
+    head: NDArray[np.bool_]
+    """Which vertices are the head's. (V,)."""
     legs: NDArray[np.bool_]
     """Which vertices are the legs'. (V,)."""
     aspect: float
@@ -60,10 +100,12 @@ class Appearances:
     faces: NDArray[np.integer]
     """(F, 3) triangles of the body."""
     subject: Subject = Subject.BODY
+    held: tuple[Array, ...] = ()
+    """Points of what is in the hands, (N, 3) each, of as many frames; N may be none."""
 
     @staticmethod
-    def of(motion: Motion, framing: Framing, aspect: float) -> Appearances:
-        """The bodies of some frames of a motion."""
+    def of(motion: Motion, framing: Framing, aspect: float, props: Sequence[PropTrack] = ()) -> Appearances:
+        """The bodies of some frames of a motion, with what they hold."""
         frames, mesh = np.arange(framing.start, framing.stop, EVERY[framing.subject]), build_mannequin(motion.skeleton)
         vertices, normals = skin(mesh, motion.skeleton, motion.root_positions[frames], motion.local_rotations[frames])
         corners = mesh.vertices[mesh.faces].astype(np.float64)
@@ -71,8 +113,9 @@ class Appearances:
         areas = np.zeros(len(mesh.vertices))
         np.add.at(areas, mesh.faces, whole[:, None])
         part = np.isin(mesh.joints[:, 0], framing.hands if framing.subject is Subject.HANDS else INDEX["head"])
-        legs = np.isin(mesh.joints[:, 0], LEGS)
-        return Appearances(vertices, normals, areas, part, legs, aspect, mesh.faces, framing.subject)
+        head, legs = (np.isin(mesh.joints[:, 0], joints) for joints in (INDEX["head"], LEGS))
+        held = tuple(prop_points(props, frame) for frame in frames.tolist()) if props else ()
+        return Appearances(vertices, normals, areas, part, head, legs, aspect, mesh.faces, framing.subject, held)
 
     @cached_property
     def size(self) -> tuple[int, int]:
@@ -81,8 +124,7 @@ class Appearances:
 
     def near(self, scene: Sequence[Solid], camera: Camera) -> Real:
         """How near what is nearest of a home is, minus infinity for nothing. (height, width)."""
-        width, height = self.size
-        return nearness_of(scene, camera, self.size) if scene else np.full((height, width), -np.inf)
+        return nearness_of(scene, camera, self.size)
 
     def shares(self, scene: Sequence[Solid], camera: Camera) -> Array:
         """How much of each body's near side, and of its part's, is in the picture with nothing before it. (T, 2).
@@ -92,18 +134,16 @@ class Appearances:
         return self._shares(self.near(scene, camera), camera)
 
     def _shares(self, near: Real, camera: Camera) -> Array:
-        width, height = self.size
         shares = np.zeros((len(self.vertices), 2))
         for frame, (points, normals) in enumerate(zip(self.vertices, self.normals, strict=True)):
-            turned = np.einsum("vk,vk->v", normals, np.asarray(camera.eye, dtype=np.float32) - points) > 0
-            viewed = camera.view(points[turned].astype(np.float64))
+            some, eye = points[::SPARSE], np.asarray(camera.eye, dtype=np.float32)
+            turned = np.einsum("vk,vk->v", normals[::SPARSE], eye - some) > 0
+            viewed = camera.view(some[turned].astype(np.float64))
             viewed[:, 2] = np.maximum(viewed[:, 2] - SLACK[self.subject], NEAREST)
-            x, y, nearness = np.moveaxis(camera.project(viewed, self.size), -1, 0)
-            inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
-            column, row = (np.clip(value, 0, most - 1).astype(int) for value, most in ((x, width), (y, height)))
             before = near if self.subject is Subject.BODY else self._with_body(near, points, camera)[0]
-            seen = inside & (before[row, column] <= nearness)
-            for part, weights in enumerate((self.areas[turned], self.areas[turned] * self.part[turned])):
+            seen = self._free(before, camera.project(viewed, self.size))
+            area, own = self.areas[::SPARSE][turned], self.part[::SPARSE][turned]
+            for part, weights in enumerate((area, area * own)):
                 shares[frame, part] = weights @ seen / max(weights.sum(), 1e-9)
         return shares
 
@@ -125,17 +165,67 @@ class Appearances:
         legs = np.append(self.legs[self.faces].all(axis=1), False)
         return float(np.mean([legs[self._with_body(near, points, camera)[1]].mean() for points in self.vertices]))
 
-    def shown(self, scene: Sequence[Solid], camera: Camera) -> float:
-        """The share of frames in which enough of the body and its part is seen; less where what is much nearer fills
-        the picture, or legs that of a face."""
+    def look(self, scene: Sequence[Solid], camera: Camera) -> Look:
+        """What a camera shows of the bodies in a home."""
         near = self.near(scene, camera)
-        seen = (self._shares(near, camera) >= ASKED[self.subject]).all(axis=1)
+        shares = self._shares(near, camera)
+        seen = (shares >= ASKED[self.subject]).all(axis=1)
         before = float((near > 1.0 / (MUCH * np.linalg.norm(np.subtract(camera.eye, camera.target)))).mean())
         if self.subject is Subject.FACE:
             before += self._legs_share(near, camera)
-        return float(np.mean(seen)) - max(before - CROWDED, 0.0)
+        shown = float(np.mean(seen)) - max(before - CROWDED, 0.0)
+        body, part, held = APPEALS
+        appeal = float(shares.mean(axis=0) @ (body, part)) + held * self._held_share(near, camera)
+        return Look(shown, appeal - FOREGROUND * self._foreground(near, camera) - CLUTTER * self._clutter(near, camera))
 
-    @staticmethod
-    def enough(shown: float) -> bool:
-        """Whether a body is hidden for no more than a moment."""
-        return shown >= ENOUGH
+    def _held_share(self, near: Real, camera: Camera) -> float:
+        """How much of what is held is in the picture with nothing before it; none where nothing is held."""
+        if not any(map(len, self.held)):
+            return 0.0
+        shares = []
+        for held, points in zip(self.held, self.vertices, strict=True):
+            if len(held):
+                before = self._with_body(near, points, camera)[0]
+                viewed = camera.view(held)
+                viewed[:, 2] = np.maximum(viewed[:, 2] - SLACK[Subject.HANDS], NEAREST)
+                shares.append(float(self._free(before, camera.project(viewed, self.size)).mean()))
+        return float(np.mean(shares))
+
+    def _free(self, before: Real, projected: Real) -> NDArray[np.bool_]:
+        """Which points (N, 3) of a picture are in it and not behind what is nearest. (N,)."""
+        width, height = self.size
+        x, y, nearness = np.moveaxis(projected, -1, 0)
+        inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
+        column, row = (np.clip(value, 0, most - 1).astype(int) for value, most in ((x, width), (y, height)))
+        return np.asarray(inside & (before[row, column] <= nearness))
+
+    def _foreground(self, near: Real, camera: Camera) -> float:
+        """The share of the picture that things between camera and body fill, those that stand high."""
+        width, height = self.size
+        middle = camera.view(self.vertices.reshape(-1, 3).mean(axis=0, dtype=np.float64))[2]
+        nearer = near > 1.0 / (BEFORE * max(float(middle), NEAREST))
+        if not nearer.any():
+            return 0.0
+        rows, _ = np.nonzero(nearer)
+        slope = (0.5 * height - rows - 0.5) * 2.0 * np.tan(0.5 * camera.fov) / height
+        tall = camera.eye[1] + (slope * camera.axes[1, 1] + camera.axes[2, 1]) / near[nearer]
+        return float(np.clip((tall - LOW) / (TALL - LOW), 0.0, 1.0).sum()) / (width * height)
+
+    def _clutter(self, near: Real, camera: Camera) -> float:
+        """How many edges of things there are about the head, beside and above it: 0 for none, 1 for a clutter."""
+        width, height = self.size
+        distance = 1.0 / np.maximum(near, 1e-3)
+        edges = np.zeros(near.shape, dtype=bool)
+        edges[:, 1:] |= np.abs(np.diff(distance, axis=1)) > JUMP * np.minimum(distance[:, 1:], distance[:, :-1])
+        edges[1:] |= np.abs(np.diff(distance, axis=0)) > JUMP * np.minimum(distance[1:], distance[:-1])
+        found = []
+        for points in self.vertices[:: max(len(self.vertices) // 3, 1)]:
+            head = points[self.head].astype(np.float64)
+            middle, radius = head.mean(axis=0), float(np.ptp(head[:, 1])) / 2
+            x, y, nearness = camera.project(np.maximum(camera.view(middle), [-np.inf, -np.inf, NEAREST]), self.size)
+            radius *= height / (2.0 * np.tan(0.5 * camera.fov)) * nearness
+            across, down = np.arange(width) + 0.5 - x, np.arange(height)[:, None] + 0.5 - y
+            away = np.hypot(across, down) / radius
+            ring = (away > RING[0]) & (away < RING[1]) & (down < CHIN * radius)
+            found.append(float(edges[ring].mean()) if ring.any() else 0.0)
+        return min(float(np.mean(found)) / CLUTTERED, 1.0)

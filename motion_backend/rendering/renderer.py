@@ -106,8 +106,15 @@ class Still:
 
 
 def nearness_of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -> Array:
-    """How near what is nearest is in every pixel, minus infinity for nothing. (height, width)."""
-    return _Scene.of(solids).visible(camera, size)[1]
+    """How near what is nearest is in every pixel, minus infinity for nothing or glass. (height, width)."""
+    from motion_backend.rendering.depth_buffer import draw
+
+    solid = [np.asarray(one.vertices, dtype=np.float64)[one.faces] for one in solids if one.opacity >= 1]
+    nearest, best = empty_buffers(size)
+    if solid:
+        screen = camera.project(clip(camera.view(np.concatenate(solid)), camera)[0], size)
+        draw(screen, np.full(len(screen), 4, dtype=np.int64), 0, nearest, best)
+    return best
 
 
 @dataclass(frozen=True)

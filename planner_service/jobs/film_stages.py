@@ -42,7 +42,7 @@ class Filmer:
         with TemporaryDirectory(prefix="sims-film-") as folder:
             path = write_film(filmed, Path(folder) / "film.mp4", show=self._telling(film_id))
             data = path.read_bytes()
-        summary = {"frames": len(filmed.motion), "bytes": len(data)}
+        summary = {"frames": len(filmed.edit), "bytes": len(data)}
         made = Made(KIND, 0, data, summary, None, 1.0, time.perf_counter() - started)
         self.store.record(film_id, made, self.worker)
 

@@ -1,24 +1,29 @@
-"""A story as film.mp4: shots of the body acting it out, its title at the beginning, its told words as captions."""
+"""A story as film.mp4: shots of the body acting it out, its title at the beginning, its told words as captions.
+
+Frames are numbered as the motion's are; what the film leaves out of it has none.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.formats.mp4 import write_mp4
+from motion_backend.rendering.film_edit import FilmEdit
 from motion_backend.rendering.film_frames import film_frames
 from motion_backend.rendering.film_picture import lay_words
 from motion_backend.rendering.film_shots import FilmShot, film_shots
 from motion_backend.rendering.title_place import Place, title_place
 from planner_service.output.film_letters import lettered, titled
-from planner_service.output.film_pages import subtitles
+from planner_service.output.film_pages import Subtitle, subtitles
 from scene_graphs.errors import UserError
 
 if TYPE_CHECKING:
@@ -38,8 +43,9 @@ TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
 """Of the picture's height."""
 WORDS_END: Final = 0.94
 """Where in the picture's height told words end."""
-SHADE: Final = 0.62
-"""How much of a picture's light stays under its words."""
+SHADE: Final = 0.42
+"""How much of a picture's light stays under its words: white letters are 4.5 times as bright as a white wall there
+(WCAG 2.2, contrast), whatever is behind them."""
 
 
 class FilmUnavailableError(UserError):
@@ -70,21 +76,46 @@ class Filmed:
         """One that was just made."""
         return Filmed(story.planned.home, story.motion, story.told, story.segments, story.role)
 
+    @cached_property
+    def words(self) -> list[Subtitle]:
+        """The told words, by frames of the motion."""
+        titled = round(FIRST_WORDS * self.motion.fps) if self.told.title.strip() else 0
+        return subtitles(self.told, self.segments, self.motion.fps, titled)
 
-def write_film(
-    filmed: Filmed, path: Path, size: tuple[int, int] = SIZE, show: Callable[[float], None] = lambda _: None
-) -> Path:
-    """Film a story; `show` is told which share is done, and what it raises ends the film. FilmUnavailableError."""
-    check_film()
-    motion, told = filmed.motion, filmed.told
-    shots = film_shots(filmed.home, motion, [start for start, _ in filmed.segments], size[0] / size[1], filmed.role)
-    title = titled(told.title, size, TITLE_HEIGHT)
+    @cached_property
+    def edit(self) -> FilmEdit:
+        """What the film shows of the motion."""
+        title = [(0, round(TITLE_SECONDS[1] * self.motion.fps))] if self.told.title.strip() else []
+        return FilmEdit.of(self.motion, [*title, *((line.start, line.stop) for line in self.words)])
+
+    def edited_to_dict(self) -> dict[str, Any]:
+        """How long the film is, and from where to where it leaves the motion out (seconds of the motion)."""
+        fps = self.motion.fps
+        gaps = [{"start": round(start / fps, 3), "stop": round(stop / fps, 3)} for start, stop in self.edit.left_out]
+        return {"seconds": round(len(self.edit) / fps, 3), "left_out": gaps}
+
+
+@dataclass(frozen=True)
+class FilmPlan:
+    """A film before it is drawn."""
+
+    shots: Iterator[FilmShot]
+    """Each is chosen when it is asked for."""
+    dressed: Callable[[int, Planes], Planes]
+    """Lays the title and the told words of a frame of the motion onto its picture."""
+
+
+def film_plan(filmed: Filmed, size: tuple[int, int] = SIZE) -> FilmPlan:
+    """The shots and words of a story's film, for pictures of that size."""
+    motion = filmed.motion
+    starts = [start for start, _ in filmed.segments]
+    shots = film_shots(filmed.home, motion, starts, size[0] / size[1], filmed.role, filmed.edit)
+    title = titled(filmed.told.title, size, TITLE_HEIGHT)
     across, bottom, untitled = 0.0, 0.0, 0
     if title is not None:
         place, untitled, shots = _placed(title.shape, size, shots, motion)
         across, bottom = place.across, place.box((title.shape[0], title.shape[1]), size)[3] / size[1]
-    lines = subtitles(told, filmed.segments, motion.fps, round(FIRST_WORDS * motion.fps) if untitled else 0)
-    words = [(line, lettered(line.lines, size, TEXT_HEIGHT)) for line in lines]
+    words = [(line, lettered(line.lines, size, TEXT_HEIGHT)) for line in filmed.words]
 
     def dressed(frame: int, picture: Planes) -> Planes:
         for line, letters in words:
@@ -94,9 +125,19 @@ def write_film(
             lay_words(picture, title, bottom, SHADE, across)
         return picture
 
+    return FilmPlan(shots, dressed)
+
+
+def write_film(
+    filmed: Filmed, path: Path, size: tuple[int, int] = SIZE, show: Callable[[float], None] = lambda _: None
+) -> Path:
+    """Film a story; `show` is told which share is done, and what it raises ends the film. FilmUnavailableError."""
+    check_film()
+    plan, motion = film_plan(filmed, size), filmed.motion
+
     def counted() -> Iterator[Planes]:
-        for number, picture in enumerate(film_frames(motion, shots, size, dressed, filmed.role)):
-            show(number / len(motion))
+        for number, picture in enumerate(film_frames(motion, plan.shots, size, plan.dressed, filmed.role)):
+            show(number / len(filmed.edit))
             yield picture
 
     return write_mp4(counted(), path, motion.fps)

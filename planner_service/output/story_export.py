@@ -109,7 +109,16 @@ def _write_storyboard(story: Story, path: Path) -> Path:
     planned, known = story.planned, {placed.id for placed in story.planned.home.objects}
     # What is done on the floor has no piece of furniture to outline.
     targets = [action.object_id if action.object_id in known else None for action in story.actions]
-    return storyboard(planned.home, story.motion, planned.script.keyframes, path, story.told.title, targets, story.role)
+    return storyboard(
+        planned.home,
+        story.motion,
+        planned.script.keyframes,
+        path,
+        story.told.title,
+        targets,
+        story.role,
+        Filmed.of(story).edit.left_out,
+    )
 
 
 class _Tried(Exception):  # noqa: N818
@@ -267,6 +276,7 @@ def report_to_dict(story: Story) -> dict[str, Any]:
         "moved_by": {name: about(name) for name in (planned.request.backend, *story.report["made_by"])},
         "motion": story.report,
         "limits": held_against(story.report),
+        "film": Filmed.of(story).edited_to_dict(),
         "keyframes": list(_performances(story)),
     }
 

@@ -82,6 +82,8 @@ class _Panel:
     shot: Shot
     window: tuple[float, float, float, float]
     """The floor its plan shows: low x, low z, high x, high z."""
+    unfilmed: int
+    """How many of its frames the film leaves out."""
 
 
 def storyboard(
@@ -92,11 +94,13 @@ def storyboard(
     title: str = "",
     targets: Sequence[str | None] = (),
     role: Role = PLAIN,
+    left_out: Sequence[tuple[int, int]] = (),
 ) -> Path:
-    """Draw all keyframes a motion serves and save the picture as a PNG; `targets` are ids of the objects they use."""
+    """Draw all keyframes a motion serves and save the picture as a PNG; `targets` are ids of the objects they use,
+    `left_out` the frames that are in no picture of its film."""
     stage = _Stage(home, motion, motion.joint_positions(), home_props(home), Acting.of(motion, role), role)
     served = np.unique(motion.actions).tolist()
-    panels = [_panel(stage, i, keyframes[i], targets[i] if targets else None) for i in served]
+    panels = [_panel(stage, i, keyframes[i], targets[i] if targets else None, left_out) for i in served]
     windows = sorted({panel.window for panel in panels})
     with ThreadPoolExecutor(max_workers=WORKERS) as pool:
         pictures = list(pool.map(lambda panel: _picture(stage, panel.shot, _camera(stage, panel.shot)), panels))
@@ -108,12 +112,15 @@ def storyboard(
     return Path(path)
 
 
-def _panel(stage: _Stage, index: int, keyframe: Caption, target: str | None) -> _Panel:
+def _panel(
+    stage: _Stage, index: int, keyframe: Caption, target: str | None, left_out: Sequence[tuple[int, int]]
+) -> _Panel:
     frames = np.flatnonzero(stage.motion.actions == index)
     start, stop = int(frames[0]), int(frames[-1]) + 1
     shot = choose_frames(stage.motion, stage.joints, start, stop, Skill(keyframe.skill))
     shot = _with_held(stage, shot, start, stop, Skill(keyframe.skill))
-    return _Panel(index, keyframe, target, start, stop, shot, _window(stage, start, stop, shot))
+    unfilmed = sum(max(min(stop, last) - max(start, first), 0) for first, last in left_out)
+    return _Panel(index, keyframe, target, start, stop, shot, _window(stage, start, stop, shot), unfilmed)
 
 
 def _with_held(stage: _Stage, shot: Shot, start: int, stop: int, skill: Skill) -> Shot:
@@ -209,6 +216,8 @@ def _draw_pair(
     keyframe, fps = panel.keyframe, stage.motion.fps
     heading = f"{panel.index + 1}  {keyframe.skill.words}  ·  {keyframe.furniture}  ·  {keyframe.emotion}"
     seconds = f"{panel.start / fps:.0f}–{panel.stop / fps:.0f} s"
+    if panel.unfilmed:
+        seconds += f" · {panel.unfilmed / fps:.1f} s of walking not in the film"
     right = (left + PLAN[0] + SIDE[0] + 4) / width
     plain: dict[str, Any] = {"x": left / width, "color": INK, "va": "top", "parse_math": False}
     figure.text(y=(bottom - 7) / height, s=heading, fontsize=9.5, weight="bold", **plain)

@@ -153,9 +153,9 @@ def test_what_stands_between_a_camera_and_a_body_is_seen_to_hide_it_or_its_head(
         ]
         return Solid(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]]))
 
-    assert bodies.shown([], camera) == 1.0
+    assert bodies.look([], camera).shown == 1.0
     assert bodies.shares([], camera).min() > 0.95
-    assert bodies.shown([board(0.9, 0.0)], camera) == 0.0
+    assert bodies.look([board(0.9, 0.0)], camera).shown == 0.0
     whole, head = bodies.shares([board(0.2, 0.5)], camera)[0]
     assert whole > 0.5
     assert head < 0.3

@@ -7,13 +7,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from upright_body import walking
 
-from motion_backend.motion import Motion
 from motion_backend.rendering.film_entrance import BEFORE, Entrance
 from motion_backend.rendering.film_shots import film_shots
-from motion_backend.rotations import yaw_to_quat
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import build_skeleton
 from planner_service.grounding.opening_places import entry
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout_library import built_in_layouts
@@ -28,19 +26,6 @@ def homes() -> tuple[tuple[Home, tuple[float, float, float]], ...]:
     made = [home_from_layouts([room], seed=0) for room in rooms]
     found = [(home, entry(home, scene_of(home).walkable, 0)) for home in made]
     return tuple((home, at) for home, at in found if at is not None)
-
-
-def walking(at: tuple[float, float, float], metres: float, frames: int = 60) -> Motion:
-    """A body that goes straight on from a place [x, z, yaw], upright."""
-    skeleton, (x, z, yaw) = build_skeleton(1.7), at
-    gone = np.linspace(0.0, metres, frames)
-    height = np.full(frames, skeleton.standing_height)
-    roots = np.stack([x + gone * np.sin(yaw), height, z + gone * np.cos(yaw)], axis=1)
-    turns = np.zeros((frames, len(skeleton.names), 4), np.float32)
-    turns[..., 3] = 1.0
-    turns[:, 0] = yaw_to_quat(yaw)
-    contacts, actions = np.ones((frames, 4), np.float32), np.zeros(frames, np.int32)
-    return Motion(roots.astype(np.float32), turns, contacts, skeleton, actions)
 
 
 @pytest.mark.parametrize("metres", [0.0, 1.0])

@@ -6,9 +6,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from motion_backend.rendering.film_picture import lay_words, split
+from motion_backend.rendering.film_picture import BLACK, WHITE, lay_words, split
+from motion_backend.rendering.renderer import to_linear
 from motion_backend.rendering.title_place import PLACES
-from planner_service.output.film import TEXT_HEIGHT, TITLE_HEIGHT, WORDS_END
+from planner_service.output.film import SHADE, TEXT_HEIGHT, TITLE_HEIGHT, WORDS_END
 from planner_service.output.film_letters import lettered, titled
 
 SIZES = st.sampled_from([(96, 54), (320, 180), (180, 320), (1280, 720)])
@@ -69,3 +70,15 @@ def test_slanted_words_look_otherwise_than_upright_ones() -> None:
     assert upright is not None
     assert slanted is not None
     assert upright.shape != slanted.shape or not np.allclose(upright, slanted)
+
+
+def test_words_are_four_and_a_half_times_as_bright_as_what_is_behind_them_even_on_white() -> None:
+    planes = np.full((54 * 3 // 2, 96), 128, dtype=np.uint8)
+    planes[:54] = WHITE
+    letters = np.zeros((10, 40), dtype=np.float32)
+    letters[4:6, 10:20] = 1
+    lay_words(planes, letters, WORDS_END, SHADE)
+    light, dark = (
+        float(to_linear(np.array((level - BLACK) / (WHITE - BLACK)))) for level in (WHITE, planes[:54].min())
+    )
+    assert (light + 0.05) / (dark + 0.05) >= 4.5

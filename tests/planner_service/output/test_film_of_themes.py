@@ -37,7 +37,7 @@ def filmed_of(name: str) -> Filmed:
 def test_the_body_is_in_95_of_100_pictures_of_a_film(name: str, tmp_path: Path) -> None:
     filmed = filmed_of(name)
     film = list(decoded(write_film(filmed, tmp_path / "film.mp4", SIZE)))
-    assert len(film) == len(filmed.motion)
+    assert len(film) == len(filmed.edit)
     shares = np.array(list(body_shares(film, filmed, every=10).values()))
     assert np.mean(shares > PRESENT) >= 0.95
     assert shares.max() < 0.9, "what is behind it is seen too"
