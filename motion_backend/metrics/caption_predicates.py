@@ -30,8 +30,10 @@ EASES: Final = 0.3
 """Seconds at both ends of a hold in which the body still comes to it, or leaves it."""
 STARTS: Final = 0.6
 """Seconds at both ends of a walk that belong to starting and stopping."""
-AFTERWARDS, BEFOREHAND = r"\bpick|\bturn on", r"\bput"
+AFTERWARDS, BEFOREHAND = r"\bpick|\bturn on", r"\bput|\bslam"
 """Words of touches that show after the hand was there, and before."""
+ARRIVES: Final = 3
+"""Frames in which a hand gets to a thing."""
 FROM_CHAIR: Final = 0.36
 """How far a pelvis rises from a chair (metres at 1.70 m)."""
 NEAREST: Final = 0.03
@@ -146,7 +148,7 @@ def kept_share(verdicts: Iterable[Verdict | None]) -> float | None:
 def shown(motion: Motion, action: Action) -> Motion:
     """The frames that show a caption: the hold of a pose, the hand at its goal, the way of a walk, all of a rise.
 
-    What is picked up or turned on shows once the hand has left, what is put down before it is there.
+    What is picked up or turned on shows once the hand has left, what is put down or slammed before it is there.
     """
     frames, fps = len(motion), motion.fps
     match action.skill:
@@ -158,7 +160,7 @@ def shown(motion: Motion, action: Action) -> Motion:
             if re.search(AFTERWARDS, action.caption.lower()):
                 start, stop = stop, frames
             elif re.search(BEFOREHAND, action.caption.lower()):
-                start, stop = 0, start
+                start, stop = 0, start + 1
         case Skill.LOCO:
             walks = [phase for phase in motion.phases if phase.kind is PhaseKind.WALK]
             ends = round(STARTS * fps)
@@ -297,6 +299,21 @@ def _in_all(values: Array) -> Array:
     return np.broadcast_to(np.ptp(values), values.shape)
 
 
+def _in_every(body: Kinematics, values: Array) -> Array:
+    """Values (2,) of both sides, the same in every frame. (T, 2)."""
+    return np.broadcast_to(values, (len(body.motion), 2))
+
+
+def _arriving(speeds: Array) -> Array:
+    """The largest of speeds (T, 2) in the last frames. (2,)."""
+    return np.asarray(speeds[-ARRIVES:].max(axis=0))
+
+
+def _drawn_back(points: Array, fps: int) -> Array:
+    """How far points (T, 2, 3) have been from the last one in the last second. (2,)."""
+    return np.asarray(np.linalg.norm(points[-fps:] - points[-1], axis=-1).max(axis=0))
+
+
 def _travel(points: Array) -> Array:
     """The largest extent along an axis of where points (T, 2, 3) go, the same in every frame (metres). (T, 2)."""
     return np.broadcast_to(np.ptp(points, axis=0).max(axis=-1), points.shape[:2])
@@ -367,6 +384,10 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     ),
     "hand_speed": lambda body: _speeds(body, _from_pelvis(body, _palms(body))),
     "hands_apart": lambda body: np.linalg.norm(_palms(body)[:, 0] - _palms(body)[:, 1], axis=-1),
+    # Metres a second of a hand in the world at the end of what is shown, and how far from its last place it has been
+    # within the second before (metres): the same in every frame.
+    "hand_arrives": lambda body: _in_every(body, _arriving(_speeds(body, _palms(body)))),
+    "hand_drawn_back": lambda body: _in_every(body, _drawn_back(_palms(body), body.motion.fps)),
     # Degrees that the left and the right hand turn in all.
     "hand_turn": lambda body: _turning(body, ("left_wrist", "right_wrist")),
     # Metres, of the left and the right foot: the lowest corner of its sole, and of both soles, its heel, its toes; its

@@ -53,6 +53,18 @@ class Shift:
 
 
 @table
+class SlidingHands:
+    """Hands that rest and are not still."""
+
+    first_min_s: float
+    wait_min_s: float
+    wait_max_s: float
+    take_s: float
+    slide_m: float
+    lift_m: float
+
+
+@table
 class Idle:
     """data/idle.toml: the life in a held pose, of a body of usual restlessness."""
 
@@ -88,6 +100,7 @@ class Idle:
     """Of the times that one stands about, arms are as the mood has them; else as one of `waits`."""
     waits: tuple[tuple[str, str], ...]
     shift: Shift
+    hands: SlidingHands
 
     def waiting(self, usual: tuple[str, str], rng: np.random.Generator) -> tuple[str, str]:
         """How arms are held by who stands about this time: names of arm poses."""

@@ -24,13 +24,15 @@ from motion_backend.procedural.sit.sit_pose import LEANS_BACK, ON_TABLE, Place, 
 from motion_backend.procedural.sit.sit_styles import Seated, sit_style
 from motion_backend.procedural.sit.sit_transition import settle_in, sit_down, stand_up
 from motion_backend.procedural.touch.gestures import gesture
-from motion_backend.procedural.touch.hand_rests import BACK, HOLDS, Hold, Holds, follow, on_thing
+from motion_backend.procedural.touch.hand_rests import BACK, HOLDS, Hold, Holds, follow, on_thing, sliding
 from motion_backend.procedural.touch.handholds import TABLE_REACH, Pair, handholds, table_before
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot
 from scene_graphs.affordances.sit_and_lie import EDGE
 
+LEAST = 0.5
+"""How restless hands are at least."""
 SHIN = 0.05
 """Half as wide as a shin is (metres)."""
 THIGH = 0.05
@@ -84,7 +86,8 @@ def stay_seated(body: Body, part: Part) -> None:
     """Sit for a while and do what is done there."""
     style = sit_style(part.action.emotion, part.action.caption)
     held = idle(body.pose, part.hold, style.bearing.restless, body.rng, FPS)
-    body.add(gesture(follow(held, body.pose, body.holds, body.skeleton), style.doing))
+    laid = follow(held, body.pose, body.holds, body.skeleton)
+    body.add(gesture(sliding(laid, body.holds, body.rng, max(style.bearing.restless, LEAST)), style.doing))
 
 
 def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:

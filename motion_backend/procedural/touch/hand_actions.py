@@ -1,4 +1,4 @@
-"""What is done once a hand is at a thing: rest, press, wipe, turn, pick up, put down; and the way there and back.
+"""What is done once a hand is at a thing: rest, press, wipe, turn, pick up, put down, slam; the way there and back.
 
 Key poses and the way through them are rows of data/transitions/touch_*.toml, what a hand does that stays of
 touch_held.toml.
@@ -19,9 +19,17 @@ from motion_backend.procedural.touch.gestures import wave_of
 from motion_backend.procedural.touch.hand_captions import Laid, with_arms
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.hand_placement import gripped
-from motion_backend.procedural.touch.touch_keys import HeldTouches, TouchKey, TouchKeys, TouchPose, TouchTable
+from motion_backend.procedural.touch.touch_keys import (
+    HeldTouches,
+    Stroke,
+    TouchKey,
+    TouchKeys,
+    TouchPose,
+    TouchTable,
+)
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
+from motion_backend.skeleton import ARM_LENGTH
 
 Keys = list[tuple[Pose, float]]
 """Key poses, each with the seconds it takes to get to it."""
@@ -57,6 +65,10 @@ class Way:
     """How far a grip is turned to either side (radians)."""
     step: Callable[[Pose, tuple[int, int, int]], Pose] = lambda whole, _lengths: whole
     """A foot that steps up to the thing and back, in frames of coming, doing and leaving."""
+    speeds_up: float = 3.0
+    """The power of the time that a hand is given over to the thing with."""
+    luck: float = 0.0
+    """How much harder than usual it strikes, in standard deviations."""
 
     @property
     def hands(self) -> list[int]:
@@ -71,7 +83,7 @@ class Way:
     def pose(self, row: TouchPose) -> Pose:
         """The body in a key pose."""
         if row.body == "at it":
-            return _drawn(self, _bent(self.hand(row.off_m, row.fingers_rad), row), row)
+            return _drawn(self, _bent(self, self.hand(row.off_m, row.fingers_rad), row), row)
         pose = self.away if row.body == "standing" else self.lead
         if row.arms:
             pose = with_arms(pose, self.hands, row.arms)
@@ -79,7 +91,7 @@ class Way:
             arms = pose.arms.copy()
             arms[self.hands, 1] += row.arms_up_arms
             pose = replace(pose, arms=arms)
-        return _bent(pose, row)
+        return _bent(self, pose, row)
 
     def seconds(self, key: TouchKey, busy: float) -> float:
         """What a key takes, in the hands' own seconds."""
@@ -125,16 +137,43 @@ def deed(way: Way, keys: TouchKeys) -> Pose:
         if stage == "do" and (held := _HELD.get(doing, _busy if doing in keys.held.busy else None)):
             frames[stage] = held(way, last, max(way.hold, rows.hold_min_s), keys.held)
         elif following := way.keys(rows, stage, poses):
-            frames[stage] = way.through(last, following)
+            frames[stage] = _come(way, last, following, rows.stroke if stage == "come" else None)
             last, _ = following[-1]
     come, do, leave = (len(frames[stage]) for stage in STAGES[:3])
     return way.step(concatenate(list(frames.values())), (come, do, leave))
 
 
-def _bent(pose: Pose, row: TouchPose) -> Pose:
-    """Trunk and head bent as a row says."""
-    if row.spine_forward_rad:
-        pose = replace(pose, spine=pose.spine + np.array([row.spine_forward_rad, 0.0, 0.0]))
+def _come(way: Way, last: Pose, keys: Keys, stroke: Stroke | None) -> Pose:
+    """Frames through key poses, to the last one with a blow where there is a stroke."""
+    if stroke is None:
+        return way.through(last, keys)
+    (drawn, _), (there, _) = keys[-2:]
+    return concatenate([way.through(last, keys[:-1]), _struck(way, drawn, there, stroke)])
+
+
+def _struck(way: Way, drawn: Pose, there: Pose, row: Stroke) -> Pose:
+    """The hand flies faster and faster from where it is drawn back until it is at the thing, the trunk with it."""
+    hand = way.hands[0]
+    far = ARM_LENGTH * float(np.linalg.norm(there.arms[hand] - drawn.arms[hand]))
+    speed = np.clip(row.speed_mps * (1 + row.speed_share * way.luck), row.speed_min_mps, row.speed_max_mps)
+    frames = max(round(way.speeds_up * far / float(speed) * FPS), 2)
+    whole = np.arange(1, frames + 1) / frames
+    flying = interpolate([0.0, frames / FPS], [drawn, there], FPS)
+    reach, reaching, pressing = flying.reach.copy(), flying.reaching.copy(), flying.pressing.copy()
+    arms, palms = flying.arms.copy(), flying.palms.copy()
+    arms[:, hand], reach[:, hand], palms[:, hand] = drawn.arms[hand], there.reach[hand], there.palms[hand]
+    reaching[:, hand], pressing[:, hand] = whole, smooth(whole / row.palm_share)
+    return replace(flying, arms=arms, reach=reach, reaching=reaching, palms=palms, pressing=pressing)
+
+
+def _bent(way: Way, pose: Pose, row: TouchPose) -> Pose:
+    """Trunk and head bent as a row says, the pelvis back."""
+    turn = row.spine_turn_rad * (1.0 if way.laid.hand == "left" else -1.0)
+    if row.spine_forward_rad or turn:
+        pose = replace(pose, spine=pose.spine + np.array([row.spine_forward_rad, turn, 0.0]))
+    if row.pelvis_back_m:
+        ahead = rotations.rotate(rotations.yaw_to_quat(yaw_of(way.away.hips)), np.array([0.0, 0.0, 1.0]))
+        pose = replace(pose, pelvis=pose.pelvis - row.pelvis_back_m * ahead)
     if row.head_forward_rad:
         pose = replace(pose, head=pose.head + np.array([row.head_forward_rad, 0.0, 0.0]))
     if row.head_pitch_rad is not None:
@@ -168,10 +207,25 @@ def _rest(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     return replace(held, reach=reach, spine=spine, head=held.head + look)
 
 
+def _recoil(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
+    """The hand bounces off what stopped it and the trunk goes on; then it leans there, out of breath."""
+    row = keys.recoil
+    rest = replace(keys.rest, breath_rad=row.breath_ratio * keys.rest.breath_rad)
+    held = _rest(way, there, seconds, replace(keys, rest=rest))
+    time = np.arange(1, len(held) + 1) / FPS
+    off, follows = (
+        size * np.sin(np.pi * np.minimum(time / lasts, 1.0))
+        for size, lasts in ((row.off_m, row.off_s), (row.follows_rad, row.follows_s))
+    )
+    reach = held.reach.copy()
+    reach[:, way.hands[0]] += off[:, None] * way.laid.normal
+    return replace(held, reach=reach, spine=held.spine + follows[:, None] * [1.0, 0.0, 0.0])
+
+
 def _wash(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     """Wide circles; trunk, hips and eyes go along."""
     row = keys.wash
-    time, ease, held = _held(there, seconds, keys.ease_s)
+    time, ease, held = _held(there, seconds, row.grows_s)
     around = 2 * np.pi * row.stroke_hz * time
     aside, forth = ease * np.sin(around), ease * np.cos(around)
     along = way.laid.stroke
@@ -235,7 +289,12 @@ def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     return replace(held, reach=reach, palms=palms, spine=spine)
 
 
-_HELD: Final[dict[str, Callable[[Way, Pose, float, HeldTouches], Pose]]] = {"": _rest, "wash": _wash, "rotate": _rotate}
+_HELD: Final[dict[str, Callable[[Way, Pose, float, HeldTouches], Pose]]] = {
+    "": _rest,
+    "wash": _wash,
+    "rotate": _rotate,
+    "strike": _recoil,
+}
 """What a hand does for some seconds that stays on a thing in a pose."""
 
 

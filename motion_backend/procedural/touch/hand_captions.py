@@ -28,7 +28,7 @@ class Handled:
     """What a caption may say of hands at a thing."""
 
     doing: str = ""
-    """pick, put, press, wash or rotate; nothing for a plain touch."""
+    """What `touch_keys.TouchKeys` has a table of; nothing for a plain touch."""
     both_hands: bool = False
     """Whether both are laid on it."""
 

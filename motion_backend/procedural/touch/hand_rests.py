@@ -11,7 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.motion import FPS
 from motion_backend.procedural.arm_solver import Arm
+from motion_backend.procedural.held_poses import idle_table
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.pose_solver import chest_frame, released, trunk_and_legs
 from motion_backend.rotations import Array
@@ -31,6 +33,8 @@ STEEP_FROM, STEEP_WITHIN = 0.75, 0.2
 (cosines)."""
 TIP = 0.16
 """Wrist to the tips of the fingers (metres at 1.70 m)."""
+BETWEEN = -0.03
+"""A hand that is farther in than this on its thigh lies on the other one, or between them (metres at 1.70 m)."""
 ON_SKIN, ON_THINGS = 0.030, 0.042
 """Wrist above what the palm lies on: bodies give way under the fingers, furniture does not."""
 
@@ -138,6 +142,26 @@ def follow(pose: Pose, rest: Pose, holds: Holds, skeleton: Skeleton) -> Pose:
             reach[:, index], palms[:, index] = rest.reach[index], rest.palms[index]
     left, right = (hold if hold is not None and hold.part else None for hold in holds)
     return lay_hands(replace(pose, reach=reach, palms=palms), (left, right), skeleton)
+
+
+def sliding(pose: Pose, holds: Holds, rng: np.random.Generator, restless: float) -> Pose:
+    """T frames whose hands slide on their own thighs, where they lie there, now and then, and back at the end."""
+    row, frames = idle_table().hands, len(pose)
+    reach = pose.reach.copy()
+    for index, hold in enumerate(holds):
+        if hold is None or hold.part != "left_hip" or hold.palm[0] < BETWEEN:
+            continue
+        turn, time = pose.palms[:, index], np.arange(frames) / FPS
+        slid, lifted, place = np.zeros(frames), np.zeros(frames), 0.0
+        at = rng.uniform(row.first_min_s, row.wait_max_s) / restless
+        while at + row.take_s < frames / FPS:
+            wanted, share = rng.uniform(-row.slide_m, row.slide_m), smooth((time - at) / row.take_s)
+            slid, lifted = slid + share * (wanted - place), lifted + 4 * row.lift_m * share * (1 - share)
+            place, at = wanted, at + row.take_s + rng.uniform(row.wait_min_s, row.wait_max_s) / restless
+        slid *= smooth((time[-1] - time) / row.take_s)
+        way = np.stack([(1.0, -1.0)[index] * slid, lifted, np.zeros(frames)], axis=1)
+        reach[:, index] += rotations.rotate(turn, way)
+    return replace(pose, reach=reach)
 
 
 def _joints(pose: Pose, holds: Holds, skeleton: Skeleton) -> tuple[Array, Array]:

@@ -104,7 +104,9 @@ def touch(
     step_s = row.folding_s if raised else row.kneeling_step_s
     times = manner.hold, tempo, pace, step_s, manner.doing, max(looks, 1 / FPS)
     turns = turns_of_grip(reached, laid, skeleton, keys.held.rotate) if manner.doing == "rotate" else (0.0, 0.0)
-    way = Way(away, lead, kneeling, hand, laid, *times, turns, partial(stepped, step=step, row=keys.reach.step))
+    step_in = partial(stepped, step=step, row=keys.reach.step)
+    luck = float(rng.normal()) if manner.doing == "strike" else 0.0
+    way = Way(away, lead, kneeling, hand, laid, *times, turns, step_in, row.goes_along_power, luck)
     whole = lifted_off(deed(way, keys), laid, skeleton)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
     whole = replace(whole, knees=knees)

@@ -111,6 +111,9 @@ class TouchPose:
     arms_up_arms: float = 0.0
     """How much higher these hands are held (arm lengths)."""
     spine_forward_rad: float = 0.0
+    spine_turn_rad: float = 0.0
+    """Towards the side of its hand."""
+    pelvis_back_m: float = 0.0
     head_forward_rad: float = 0.0
     head_pitch_rad: float | None = None
     """The bend of the head in place of what it was."""
@@ -129,6 +132,21 @@ class TouchKey:
 
 
 @table
+class Stroke:
+    """A hand that flies from a pose in which it is drawn back onto the thing, and is stopped by it."""
+
+    speed_mps: float
+    """Of the hand as it gets there."""
+    speed_share: float
+    """A standard deviation of that,"""
+    speed_min_mps: float
+    speed_max_mps: float
+    """and its bounds, whatever the mood."""
+    palm_share: float
+    """Of the way in time, the palm is turned to the surface by then."""
+
+
+@table
 class TouchTable:
     """What is done at a thing: a file of `touch_*.toml`."""
 
@@ -138,6 +156,8 @@ class TouchTable:
     """What a hand that stays there does takes at least this long."""
     busy_s: float = 0.0
     """How much of the seconds to stay is over where the stage "after" begins."""
+    stroke: Stroke | None = None
+    """How the last key of the stage "come" is got to, where that is with a blow."""
 
 
 @table
@@ -156,10 +176,25 @@ class Rest:
 
 
 @table
+class Recoil:
+    """A hand that was stopped: it bounces, the trunk goes on, and then it leans there, out of breath."""
+
+    off_m: float
+    off_s: float
+    follows_rad: float
+    """Of the trunk, forwards."""
+    follows_s: float
+    breath_ratio: float
+    """Against who rests there."""
+
+
+@table
 class Wash:
     """Strokes from side to side."""
 
     stroke_hz: float
+    grows_s: float
+    """How long strokes take to become as wide as they get."""
     forth_share: float
     """How far to and fro, of the stroke's width: hands go round."""
     palm_rad: float
@@ -230,6 +265,7 @@ class HeldTouches:
     ease_s: float
     """They grow out of the pose at the thing, and back into it, over this long."""
     rest: Rest
+    recoil: Recoil
     wash: Wash
     rotate: Rotate
     busy: dict[str, Busy]
@@ -251,6 +287,7 @@ class TouchKeys:
     knock: TouchTable
     stir: TouchTable
     pour: TouchTable
+    strike: TouchTable
 
     def of(self, doing: str) -> TouchTable:
         """The key poses of what is done (see `hand_captions.Handled`)."""
@@ -262,7 +299,7 @@ def touch_keys() -> TouchKeys:
     """The tables that are shipped."""
     deeds = {
         name: read_table("motion_backend", f"transitions/touch_{name}.toml", TouchTable)
-        for name in ("rest", "press", "wash", "rotate", "pick", "put", "knock", "stir", "pour")
+        for name in ("rest", "press", "wash", "rotate", "pick", "put", "knock", "stir", "pour", "strike")
     }
     return TouchKeys(
         read_table("motion_backend", "transitions/reach.toml", ReachTable),

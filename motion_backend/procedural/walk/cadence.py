@@ -38,6 +38,10 @@ class Cadence:
     turn_max_hz: float
     """but no quicker than this."""
     min_hz: float
+    spot_hz: float
+    """Who turns on the spot steps round at this,"""
+    spot_m: float
+    """and goes no farther than this."""
     run_hz: float
     """Who runs does so at this whatever the speed, of a usual stride: fast is whose steps are long."""
     skip_max_hz: float
@@ -86,9 +90,13 @@ def plan_phase(
     if style.aside == SIDEWAYS:
         # Feet that are brought together and apart again must not cross.
         longest = route.speed / (row.side_step_max_ratio * style.width * scale)
-    # A turn takes a step every half right angle or so, a spin fewer: nobody trips along at five steps a second.
+    # A turn takes a step every third of a half turn or so, a spin fewer: nobody trips along at five steps a second.
     turned = np.minimum(turning / row.turn_rad, row.turn_max_hz)
-    rate = np.maximum.reduce([usual, turned, longest, np.full_like(usual, row.min_hz)])
+    on_the_spot = (
+        float(route.speed.sum()) / fps < row.spot_m * scale and float(np.ptp(route.heading)) > row.turn_rad / 2
+    )
+    least = row.spot_hz if on_the_spot else row.min_hz
+    rate = np.maximum.reduce([usual, turned * (not on_the_spot), longest, np.full_like(usual, least)])
     if style.double < 0:
         # No leg has to reach as far as a step in flight goes.
         rate = np.maximum(turned, row.run_hz / (style.stride * scale ** (row.size_power / 2)))
@@ -106,7 +114,8 @@ def plan_phase(
         phase, begun = stride.phase + (np.cumsum(rate) - rate[0]) / fps, stride.begun
     # Both feet step at least once, and a last step in flight comes down before the end.
     total = max(np.ceil(phase[-1] + 0.5), begun + 1.0 + BEATS) + max(0.0, -style.double / 2) + row.standing_steps
-    extra = max(int(np.ceil((total - phase[-1]) / row.end_hz * fps)), 1)
+    end = row.spot_hz if on_the_spot else row.end_hz
+    extra = max(int(np.ceil((total - phase[-1]) / end * fps)), 1)
     tail = phase[-1] + (total - phase[-1]) * np.arange(1, extra + 1) / extra
     longer = Route(
         np.concatenate([route.position, np.repeat(route.position[-1:], extra, axis=0)]),

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from motion_backend import rotations
+from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.procedural.walk.foot_trajectory import HEEL_RISE, SETTLE, TIP_UP, Feet, Swing, foot_table
 from motion_backend.procedural.walk.root_path import Route
@@ -117,6 +118,11 @@ class SwingShape:
     drag_clearance_share: float
     """Of the usual clearance, of a foot that is dragged."""
     hop_clearance_share: float
+    high_s: float
+    """In the air, and how far, a foot has to be for being lifted as high as the style says:"""
+    high_m: float
+    high_power: float
+    """and how fast that falls off for less."""
     heel_off_deg: float
     heel_off_power: float
     """Of the stride."""
@@ -342,10 +348,12 @@ def _swing_of(
     leaves, stride = (_forward(target - origin, points, full) for points in (yaw, heading))
     dragged = shape.drag_clearance_share if style.drag and beat.index == 1 else 1.0
     clearance = style.clearance * style.character.clearance_sides_ratio**side
-    if style.double < 0:
-        # Who runs lifts feet high that go far, and not where he gets going and slows down.
-        usual = foot_table().air.usual_m
-        clearance = usual + abs(leaves) * (clearance - usual)
+    usual = foot_table().air.usual_m
+    far = float(np.linalg.norm(target - origin)) / skeleton.scale
+    # Who runs lifts feet high that go far, and not where he gets going and slows down; others not in small quick steps.
+    high = abs(leaves) if style.double < 0 else _high(beat, phase, far) ** (not style.skips)
+    if clearance > usual:
+        clearance = usual + high * (clearance - usual)
     rolled = np.radians(shape.heel_off_deg) * style.roll * abs(leaves) ** shape.heel_off_power
     return Swing(
         origin,
@@ -366,6 +374,12 @@ def _swing_of(
         ),
         scale=skeleton.scale,
     )
+
+
+def _high(beat: _Beat, phase: Array, far: float) -> float:
+    """How high a foot is lifted that goes so far (metres at 1.70 m), of how high it is in long steps with time to."""
+    shape, (lift, land) = footstep_table().swing, np.searchsorted(phase, beat.window)
+    return float(min((land - lift) / (shape.high_s * FPS), far / shape.high_m, 1.0) ** shape.high_power)
 
 
 def _roomy(swing: Swing, beside: Array, room: Room) -> Swing:

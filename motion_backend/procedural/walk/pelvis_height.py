@@ -70,6 +70,10 @@ class Bounce:
     """Phase at which a walking body is lowest."""
     run_lower_ratio: float
     """How much of a runner's bounce is downwards."""
+    seen_from_m: float
+    """From here on a walk is seen to bounce,"""
+    seen_within_m: float
+    """wholly so from so much more."""
     skip_m: float
     skip_at_phase: float
     skip_lower_ratio: float
@@ -107,8 +111,9 @@ def lifted(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skelet
         # Feet in the air do not hold the body down.
         limits.append(np.where(pose.planted[:, index] > 0, top, np.maximum(top, carried - row.in_air_m)))
     # The least of a few frames, then smoothed over no more than these: never above what the legs allow, and no corner.
-    # Of who runs only what the legs take off: the least of a few frames would leave nothing of a flight.
-    flies = wanted if style.double < 0 else np.zeros_like(wanted)
+    # Of who runs or bounces only what the legs take off: the least of a few frames of a bounce is flat below and leaves
+    # nothing of a flight.
+    flies = (1.0 if style.double < 0 else _bounces(style)) * wanted
     low = minimum_filter1d(np.minimum(wanted, np.minimum(*limits)) - flies, LOWEST_OF, mode="nearest")
     pelvis[:, 1] = flies + gaussian_filter1d(low, SMOOTHED, radius=SMOOTHED_OVER, mode="nearest")
     return pelvis
@@ -130,6 +135,12 @@ def _carried(route: Route, steps: Steps, style: Walk, skeleton: Skeleton, in_str
     starting = 1.0 if in_stride else smooth((steps.phase - steps.phase[0]) / row.first_steps)
     carried = at_rest + np.clip(row.moving_ratio * steps.moving, 0.0, 1.0) * ending * starting * (walking - at_rest)
     return carried + row.tiptoe_m * skeleton.scale * np.sin(steps.tiptoe.min(axis=1)), ending
+
+
+def _bounces(style: Walk) -> float:
+    """How much a walk is one that bounces."""
+    row = pelvis_table().bounce
+    return float(smooth((style.bounce - row.seen_from_m) / row.seen_within_m))
 
 
 def _bounce(route: Route, steps: Steps, style: Walk) -> Array:

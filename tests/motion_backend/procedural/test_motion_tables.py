@@ -141,11 +141,11 @@ def test_a_touch_goes_to_the_thing_and_comes_away_from_it(doing: str) -> None:
     assert stages == sorted(stages)
     assert {0, 2} <= set(stages)
     came, gone = ([poses[key.pose] for key in rows.key if key.stage == stage] for stage in ("come", "leave"))
-    # From over the surface onto it; eyes first, and back to standing.
+    # From over the surface onto it, but with a blow; eyes first, and back to standing.
     first = next(row for row in came if row.body == "at it")
     assert came.index(first) > [row.body for row in came].index("looking")
     assert (first.off_m > 0, min(row.off_m for row in came if row.body == "at it"), came[-1].body) == (
-        True,
+        rows.stroke is None,
         0.0,
         "at it",
     )
@@ -157,7 +157,7 @@ def test_a_touch_goes_to_the_thing_and_comes_away_from_it(doing: str) -> None:
     assert all(poses[key.pose].body == "standing" for key in rows.key if key.stage == "after")
     assert all(key.wait_s > 0 for key in rows.key)
     # What stays on the thing needs no keys there, what does not says which share of the hold is over.
-    assert (doing in ("", "wash", "rotate", *TOUCH.held.busy)) != ("do" in {key.stage for key in rows.key})
+    assert (doing in ("", "wash", "rotate", "strike", *TOUCH.held.busy)) != ("do" in {key.stage for key in rows.key})
     assert (
         (rows.busy_s > 0) == ("hold" in {key.pace for key in rows.key}) == ("after" in {key.stage for key in rows.key})
     )

@@ -68,6 +68,7 @@ TOUCHING = {
     "wash with both hands": "wash",
     "rotate with the right hand": "rotate",
     "knocking with the right hand": "knock",
+    "slamming with the right hand": "strike",
     "stirring with the right hand": "stir",
     "pouring with the right hand": "pour",
     "wiping with the right hand": "wash",

@@ -14,6 +14,7 @@ from small_home import DIRECTOR, ROOM, after, small_home
 from motion_backend import rotations
 from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
+from motion_backend.metrics.caption_predicates import judge_caption
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.touch.hand_captions import FINGER, FINGERS, Laid
 from motion_backend.procedural.touch.hand_contacts import free_stroke, palm_on, suits
@@ -58,6 +59,30 @@ def test_a_press_is_short_from_a_cocked_wrist_and_then_one_looks_up() -> None:
     look = turned(pressed, "head")[:, 1]
     assert look[np.argmin(gap)] < -0.2
     assert look[np.argmin(gap) :].max() > 0.15
+
+
+def test_a_slam_is_drawn_back_for_flies_is_stopped_by_the_thing_and_leaves() -> None:
+    motion, joints, gap = done("slamming with the right hand")
+    hit = int(np.argmax(gap < 0.01))
+    speed = np.linalg.norm(np.diff(joints[:, WRIST], axis=0), axis=1) * motion.fps
+    # Faster and faster, then stopped within a frame; it bounces, stays near and comes away.
+    assert 2.0 < speed[hit - 1] < 4.5
+    assert (np.diff(speed[hit - 5 : hit]) > -0.1).all()
+    assert speed[hit] < 0.4 * speed[hit - 1]
+    assert 0.01 < gap[hit : hit + 8].max() < 0.06
+    assert gap[-1] > 0.3
+    # Drawn back beside the shoulder, and the chest goes from there with it.
+    before = joints[hit - 15 : hit, WRIST]
+    assert np.linalg.norm(before - joints[hit, WRIST], axis=1).max() > 0.4
+    chest = turned(motion, "spine3")
+    assert chest[hit, 1] < chest[hit - 12, 1] - 0.1
+    # A hand that is only laid there is seen to be none.
+    limp, _, _ = done("touch medium height")
+    said = "slamming with the right hand"
+    for shown, kept in ((motion, True), (limp, False)):
+        verdict = judge_caption(shown, Action(Skill.TOUCH, said, Emotion.NEUTRAL))
+        assert verdict is not None
+        assert verdict.kept == kept
 
 
 def test_wiping_goes_wide_and_the_trunk_goes_along() -> None:
