@@ -138,7 +138,7 @@ class ActedBeats:
         something is not acted; none without beats."""
         if not self.outcomes:
             return []
-        share = f"{self.other_share:.0%} of the screen time shows none of these"
+        share = f"{1 - self.other_share:.0%} of the screen time shows them"
         plain = all(one.acted and not one.beat.unshown for one in self.outcomes)
         more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [
