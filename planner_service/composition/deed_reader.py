@@ -38,7 +38,7 @@ from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
-from scene_graphs.furniture import categories_of
+from scene_graphs.furniture import categories_of, group_of
 
 SURER: Final = 0.45
 """A learned caption is taken in place of the table's where it is so much likelier,"""
@@ -130,6 +130,7 @@ _NOT_DRAWN: Final = grammar().prepositions | frozenset(
         "conclusion",
     )
 )
+_HURLS: Final = frozenset(("hurl", "fling", "throw", "fall", "flop", "collapse", "dive", "topple", "crash"))
 _SMILES: Final = ("smile", "grin", "beam", "smirk")
 _NOBODY: Final = frozenset(
     ("somebody", "someone", "everybody", "everyone", "no", "nobody", "nothing", "none", "neither", "few", "hardly")
@@ -238,7 +239,7 @@ class DeedReader:
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
             return told
-        if told is not None and _says_so(told, clause):
+        if told is not None and (_says_so(told, clause) or _falls_into_bed(told, clause)):
             return told
         if told is not None and most < MOUTHED and _only_seems(likely.best, clause):
             return told  # who crumples a letter does not eat it
@@ -401,6 +402,12 @@ def _says_so(deed: Deed, clause: Clause) -> bool:
         return False  # "draws up a bench", "draws a bath"
     own = [one for one in deed.row.captions if any(part in one for part in IN_HANDS)]
     return bool(own) and deed.skill is deed.row.skill and all(shows(deed.skill, one, clause, own=True) for one in own)
+
+
+def _falls_into_bed(deed: Deed, clause: Clause) -> bool:
+    """Whether somebody gets onto a bed in a way that ends lying: "hurls herself onto the bed"."""
+    bed = any(group_of(piece) == "bed" for piece in deed.pieces)
+    return deed.named and bed and deed.skill is Skill.LIEDOWN and clause.verb in _HURLS
 
 
 def _only_seems(best: tuple[Skill, str], clause: Clause) -> bool:

@@ -35,6 +35,9 @@ RESTS: Final = re.compile(
 """A beat that says no more than that somebody sits, lies or sleeps somewhere: arms and legs are not its matter."""
 OF_LIMBS: Final = re.compile(r"\b(?:hands?|arms?|knees?|foot|feet)\b")
 """Words of a note (`Motion.notes`) on nothing but arms and legs."""
+_OF_HANDS: Final = re.compile(r"\b(?:hands?|arms?)\b")
+_TELLS_LEGS: Final = re.compile(r"\b(?:legs?|knees?|foot|feet|stretch\w*|kneel\w*|knelt|sit-ups?|push-ups?|exercis\w*|yoga)\b")
+"""Words of a beat whose matter legs are."""
 
 
 def connects(keyframe: Keyframe) -> bool:
@@ -230,10 +233,12 @@ def _seen(beat: Beat, index: int, shots: Sequence[Shot]) -> Beat:
 
 def _concerns(words: str, beat: Beat) -> bool:
     """Whether a note is about what a beat says: who is only said to lie on a bed does so wherever the knees are; and a
-    piece that something is done in place of must be named."""
+    piece that something is done in place of must be named; a mood is seen however the arms are."""
     if IN_PLACE_OF in words:
         return re.search(rf"\b{re.escape(words.partition(IN_PLACE_OF)[2])}", beat.text, re.IGNORECASE) is not None
-    return not (OF_LIMBS.search(words) and RESTS.match(beat.text))
+    if OF_LIMBS.search(words) and not _OF_HANDS.search(words):
+        return _TELLS_LEGS.search(beat.text) is not None  # who "enjoys a quiet afternoon" does with bent legs too
+    return not (OF_LIMBS.search(words) and (beat.kind == "feeling" or RESTS.match(beat.text)))
 
 
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:

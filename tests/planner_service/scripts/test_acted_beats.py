@@ -124,7 +124,8 @@ def test_a_note_on_hands_leaves_the_beat_acted_that_only_says_where_one_rests(te
     ("text", "stood_for"),
     [
         ("lies down on the bed, tired", False), ("sleeps", False), ("falls asleep on the sofa", False),
-        ("lies with her knees drawn up", True), ("does sit-ups", True),
+        ("lies with her knees drawn up", True), ("does sit-ups", True), ("enjoys a quiet afternoon", False),
+        ("stretches her legs", True),
     ],
 )  # fmt: skip
 def test_who_is_only_said_to_lie_or_sleep_does_so_however_the_knees_lie(text: str, stood_for: bool) -> None:
