@@ -463,7 +463,7 @@ def learned_row(clause: Clause, likely: Likely) -> DeedRow:
         return tuple(_idle(other, found, clause) if clause.verb else found)  # "a cup of tea"
 
     some = of(skill)
-    table = skill is Skill.SITDOWN and any("table" in one or "keyboard" in one for one in some)
+    table = skill is Skill.SITDOWN and ("table" in best or "keyboard" in best)
     everything = len(some) > ANY * len(_learned(skill))
     return DeedRow(
         (clause.verb or clause.text,),

@@ -86,6 +86,7 @@ _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
 _REFUSED: Final = {"sit": Skill.SITDOWN, "lie": Skill.LIEDOWN}
+_STANDS: Final = ("stand", "stands", "stood")
 _DESK: Final = re.compile(r"writing|typing")
 """Captions that want a table under the hands."""
 _TO_BED: Final = re.compile(r"\bto bed\b")
@@ -283,6 +284,8 @@ class KeyframeWriter:
             self.deeds.pop(index, None)
             return
         match deed.skill:
+            case Skill.LOCO if resting is not None and read.text in _STANDS:
+                self._rise(index, deed, mood)
             case Skill.STANDUP if self.keyframes and resting is None and is_beside(read):
                 self.body.show(index)  # "eats, standing up"
             case Skill.STANDUP | Skill.GETUP if not self.keyframes:
