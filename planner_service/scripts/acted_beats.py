@@ -36,7 +36,9 @@ RESTS: Final = re.compile(
 OF_LIMBS: Final = re.compile(r"\b(?:hands?|arms?|knees?|foot|feet)\b")
 """Words of a note (`Motion.notes`) on nothing but arms and legs."""
 _OF_HANDS: Final = re.compile(r"\b(?:hands?|arms?)\b")
-_TELLS_LEGS: Final = re.compile(r"\b(?:legs?|knees?|foot|feet|stretch\w*|kneel\w*|knelt|sit-ups?|push-ups?|exercis\w*|yoga)\b")
+_TELLS_LEGS: Final = re.compile(
+    r"\b(?:legs?|knees?|foot|feet|stretch\w*|kneel\w*|knelt|sit-ups?|push-ups?|exercis\w*|yoga)\b"
+)
 """Words of a beat whose matter legs are."""
 
 
