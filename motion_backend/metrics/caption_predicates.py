@@ -359,7 +359,9 @@ MEASURES: Final[dict[str, Callable[[Kinematics], Array]]] = {
     "trunk_pace": lambda body: np.abs(_slope(MEASURES["trunk_pitch"](body), body.motion.fps)),
     "nod_pace": lambda body: np.abs(_slope(MEASURES["face_down"](body), body.motion.fps)),
     "turn_pace": lambda body: np.abs(_slope(np.unwrap(MEASURES["face_left"](body), period=360), body.motion.fps)),
-    # Degrees: how far the trunk sways from side to side in all, and the hips turn in all; off the way that is gone.
+    # Degrees: how far the face nods, the trunk sways from side to side and the hips turn in all; off the way that is
+    # gone.
+    "face_nods": lambda body: _in_all(MEASURES["face_down"](body)),
     "trunk_sway": lambda body: _in_all(_trunk_aside(body)),
     "turned": lambda body: _in_all(_yaw(_heading(body))),
     "off_the_way": _off_the_way,

@@ -120,6 +120,8 @@ class DeedRow:
     """Whether nobody gets up for it, of a gesture; else whether nobody who lies does."""
     walks: bool = False
     """Of a gesture: whether it is a way of walking, and not done on the spot."""
+    alone: bool = False
+    """Of a gesture: whether it is only done where nothing else is done meanwhile: not "sweeps, singing"."""
 
 
 @table
@@ -414,7 +416,7 @@ def _said(clause: Clause, gestures: bool = True) -> tuple[int, DeedRow] | None:
     for lemmas in readings(clause):
         first = "".join(lemmas[:1])
         for pattern, row in table.gestures.get(first, ()) if gestures and does and not limbs else ():
-            if _fits(pattern, lemmas) and not says(row.unless, lemmas):
+            if _fits(pattern, lemmas) and not says(row.unless, lemmas) and not (row.alone and _is_beside(clause)):
                 return len(lemmas), row
         fitting = [
             (_words_in(pattern), row)
@@ -425,6 +427,11 @@ def _said(clause: Clause, gestures: bool = True) -> tuple[int, DeedRow] | None:
         if fitting:
             return max(fitting, key=lambda one: one[0])
     return None
+
+
+def _is_beside(clause: Clause) -> bool:
+    """Whether it goes on beside what is told before: "she sweeps, singing"."""
+    return clause.joint in (",", "while") and clause.text.split(" ", 1)[0].endswith("ing")
 
 
 def without_gestures(clause: Clause) -> DeedRow | None:

@@ -30,6 +30,8 @@ EASY_TABLE = 0.70
 """A table's edge is no farther from the pelvis for hands that do something on it (metres at 1.70 m)."""
 EASY_ELBOW = np.radians(112.0)
 """How far an elbow is open at most whose hand is on a table."""
+HEAD_ON_ARMS = 0.13
+"""The joint of a head that lies on arms, above the table these lie on (metres at 1.70 m)."""
 LEANS = np.radians(np.arange(8.0, 76.0, 1.0))
 """Leans of the trunk that are tried until the elbows lie."""
 BEHIND_PELVIS = 0.12
@@ -173,6 +175,8 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     holds = holds_of(style, place, skeleton, keys)
     if _reaches_table(place, skeleton.scale) and BUSY_ON_TABLE & set(style.arms):
         return _up_to_table(_leaning(pose, seat, -TO_TABLE, keys.trunk), style, holds, skeleton), holds
+    if style.on_elbows and style.arms == PILLOWS and place.around.table is not None:
+        return _head_on_arms(_leaning(pose, seat, -LEANS, keys.trunk), place, holds, skeleton), holds
     if style.on_elbows:
         return _on_elbows(_leaning(pose, seat, -LEANS, keys.trunk), place, holds, skeleton), holds
     back = np.array([_recline(style, place, keys.trunk)])
@@ -181,13 +185,28 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     return at_rest(leaned, holds, skeleton), holds
 
 
-SURFACES = ("armrest", "beside", "behind", "propped", "edge", "table", "keyboard", "paper", "pen", "desk")
+SURFACES = (
+    "armrest",
+    "beside",
+    "behind",
+    "propped",
+    "edge",
+    "table",
+    "keyboard",
+    "paper",
+    "pen",
+    "desk",
+    "pillow",
+    "pillow_over",
+)
 """What hands may lie on besides the body: of `Handholds`, "desk" being the table with the forearms on it."""
-ON_TABLE = ("table", "keyboard", "paper", "pen", "desk")
+PILLOWS = ("pillow", "pillow_over")
+"""Arms on a table with the head on them."""
+ON_TABLE = ("table", "keyboard", "paper", "pen", "desk", *PILLOWS)
 """Those of them that are on a table."""
-BUSY_ON_TABLE = frozenset(ON_TABLE) - {"desk"}
+BUSY_ON_TABLE = frozenset(ON_TABLE) - {"desk", *PILLOWS}
 """And those on which hands do something: elbows are bent for that."""
-INSTEAD = {"desk": "knees"} | dict.fromkeys(BUSY_ON_TABLE, "lap")
+INSTEAD = dict.fromkeys(("desk", *PILLOWS), "knees") | dict.fromkeys(BUSY_ON_TABLE, "lap")
 """Where hands lie if a surface is not there; on the thighs otherwise."""
 LACKED = {
     "armrest": "armrest",
@@ -211,6 +230,8 @@ ON_THE_FLOOR = {
     "folded_over": "knees",
     "clasped": "own_shin",
     "desk": "own_shin",
+    "pillow": "own_shin",
+    "pillow_over": "own_shin",
 }
 """Where hands lie instead where knees are up."""
 
@@ -312,6 +333,13 @@ def _on_elbows(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> P
         else:
             gap += np.abs(_from_bone(elbow, hip, knee) - ON_THIGH * skeleton.scale)
     return at_rest(leans.at(int(np.argmin(gap))), holds, skeleton)
+
+
+def _head_on_arms(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> Pose:
+    """The one of N leans in which the head lies on the arms on a table."""
+    positions, _ = skeleton.forward_kinematics(*solve(leans, skeleton))
+    over = positions[:, INDEX["head"], 1].astype(np.float64) - place.around.table_top
+    return at_rest(leans.at(int(np.argmin(np.abs(over - HEAD_ON_ARMS * skeleton.scale)))), holds, skeleton)
 
 
 def _from_bone(points: Array, start: Array, end: Array) -> Array:

@@ -16,11 +16,15 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.pose import ROTATIONS, Pose, interpolate, smooth
+from motion_backend.procedural.touch.bursts import Burst
+from motion_backend.procedural.touch.kneel import feet_behind, foot_back, foot_in_the_air
+from motion_backend.procedural.touch.touch_keys import KneelTable
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH
 from scene_graphs.data_tables import read_table, table
 
+Leg = Literal["stands", "lifted", "kneels"]
 STANDS: Final = 0.895
 """A standing pelvis (metres at 1.70 m)."""
 _FINGERS: Final = np.array([[0.6, 0.0, 0.8], [0.6, 0.0, -0.8]])
@@ -34,22 +38,6 @@ PALMS: Final = {
 """Both hands against where the body faces: palms up, fingers ahead and outwards; or palm to palm, fingers up."""
 BALL: Final = np.array([0.0, -0.035, 0.12])
 """The ball of a foot from its ankle (metres at 1.70 m)."""
-
-
-@table
-class Burst:
-    """A wave that comes and goes: so often, for so long each time, growing and fading over so long."""
-
-    every_s: float
-    lasts_s: float
-    rises_s: float = 0.12
-    after_s: float = 0.0
-    """When the first one begins."""
-
-    def share(self, time: Array) -> Array:
-        """How much of the wave is there at times (T,). (T,)."""
-        since = (time - self.after_s) % self.every_s
-        return smooth(since / self.rises_s) * smooth((self.lasts_s - since) / self.rises_s) * (time >= self.after_s)
 
 
 @table
@@ -125,9 +113,12 @@ class MoveKey:
     """How high the balls of both feet are off the floor; the pelvis is as high as `pelvis_m` says."""
     heels_up_rad: float = 0.0
     """How far the soles of both are tipped up on their balls."""
+    legs: tuple[Leg, Leg] = ("stands", "stands")
+    """What the left and the right do: stand, are on the way back and off the floor, or kneel on toes and knee."""
 
     def pose(self, held: Pose) -> Pose:
         """That key of a single held pose."""
+        held = self._knelt(held)
         heading, scale = rotations.yaw_to_quat(yaw_of(held.hips)), float(held.pelvis[1]) / STANDS
         named = np.array([bool(name) for name in self.arms])
         wrists, poles = arm_arrays(*(name or "hang" for name in self.arms))
@@ -152,6 +143,18 @@ class MoveKey:
             pressing=np.where(named, float(bool(self.palms)), held.pressing),
             planted=np.where(off.any(axis=1), 0.0, held.planted),
         )
+
+    def _knelt(self, held: Pose) -> Pose:
+        """The same pose with the legs that do not stand."""
+        if self.legs == ("stands", "stands"):
+            return held
+        rows: KneelTable = read_table("motion_backend", "transitions/kneel_to_touch.toml", KneelTable)
+        body = replace(rows.body, behind_m=gesture_table().kneels_behind_m)
+        behind = feet_behind(held, body, float(held.pelvis[1]) / STANDS)
+        ways = {"lifted": foot_in_the_air, "kneels": foot_back}
+        for index, leg in enumerate(self.legs):
+            held = ways[leg](held, index, behind, body) if leg in ways else held
+        return held
 
 
 @table
@@ -213,6 +216,8 @@ class Music:
 class Gestures:
     """data/gestures.toml."""
 
+    kneels_behind_m: float
+    """How far behind where they stood the ankles are of who kneels."""
     ease_s: float
     """A gesture grows out of the held pose, and back into it, over this long."""
     write: Writing
@@ -271,7 +276,7 @@ def _through_keys(held: Pose, time: Array, rows: Move) -> Pose:
     once = [(0.0, base), *((key.at_share, key.pose(base)) for key in rows.keys)]
     every = [(turn + share, pose) for turn in range(times) for share, pose in once] + [(float(times), base)]
     way = interpolate([share * float(time[-1]) / times for share, _ in every], [pose for _, pose in every], FPS)
-    added = ("pelvis", "spine", "head", "ankles", "toes", "arms", "elbows", "reaching", "pressing")
+    added = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "elbows", "reaching", "pressing")
     moved = {name: getattr(held, name) + getattr(way, name) - getattr(base, name) for name in added}
     turned = {
         name: rotations.compose(getattr(held, name), rotations.compose(rotations.inverse(start), getattr(way, name)))

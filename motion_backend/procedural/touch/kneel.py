@@ -43,13 +43,13 @@ TURN_COST, MOVE_COST = 0.05, 0.1
 """What a radian aside, and a metre nearer or farther, count for in choosing where to kneel (metres of elbow room)."""
 
 
-def _feet_behind(start: Pose, body: KneelingBody, skeleton: Skeleton) -> Array:
+def feet_behind(start: Pose, body: KneelingBody, scale: float) -> Array:
     """Where the ankles of a body that stands in a pose are when it kneels there. (2, 3)."""
     ahead = _ahead(start)
     aside = np.array([ahead[2], 0.0, -ahead[0]])
     sides = np.array([[body.apart_m], [-body.apart_m]]) * aside
-    places = start.ankles.mean(axis=0) + skeleton.scale * (sides - body.behind_m * ahead)
-    places[:, 1] = body.ankle_up_m * skeleton.scale
+    places = start.ankles.mean(axis=0) + scale * (sides - body.behind_m * ahead)
+    places[:, 1] = body.ankle_up_m * scale
     return np.asarray(places)
 
 
@@ -91,7 +91,7 @@ def _can_stand(at: Point2, spot: Spot, start: Point2, walkable: Walkable) -> boo
 
 def down_on_knees(start: Pose, skeleton: Skeleton, keys: KneelTable) -> list[Pose]:
     """From standing to both knees, as keys: one foot lifted back, that knee down, then the other."""
-    behind = _feet_behind(start, keys.body, skeleton)
+    behind = feet_behind(start, keys.body, skeleton.scale)
     return [_kneeling(start, row, keys.body, behind, skeleton) for row in keys.pose]
 
 
@@ -101,11 +101,11 @@ def _kneeling(start: Pose, row: KneelPose, body: KneelingBody, behind: Array, sk
     pose = start
     for index, foot in enumerate(feet):
         if foot == "back":
-            pose = _foot_back(pose, index, behind, body)
+            pose = foot_back(pose, index, behind, body)
     pose = _crouched(pose, row, body, skeleton)
     for index, foot in enumerate(feet):
         if foot == "lifted":
-            pose = _in_the_air(pose, index, behind, body)
+            pose = foot_in_the_air(pose, index, behind, body)
     return pose
 
 
@@ -154,8 +154,8 @@ def _crouched(pose: Pose, row: KneelPose, body: KneelingBody, skeleton: Skeleton
     return replace(pose, pelvis=pelvis, hips=hips, spine=spine, head=bend(body.head_forward_rad))
 
 
-def _foot_back(pose: Pose, index: int, behind: Array, body: KneelingBody) -> Pose:
-    """One foot on its curled toes behind."""
+def foot_back(pose: Pose, index: int, behind: Array, body: KneelingBody) -> Pose:
+    """One foot (0 left, 1 right) on its curled toes behind."""
     ankles, feet, toes, knees = pose.ankles.copy(), pose.feet.copy(), pose.toes.copy(), pose.knees.copy()
     ankles[index] = behind[index]
     pitched = rotations.rotvec_to_quat(np.array([body.foot_pitch_rad, 0.0, 0.0]))
@@ -165,9 +165,9 @@ def _foot_back(pose: Pose, index: int, behind: Array, body: KneelingBody) -> Pos
     return replace(pose, ankles=ankles, feet=feet, toes=toes, knees=knees)
 
 
-def _in_the_air(pose: Pose, index: int, behind: Array, body: KneelingBody) -> Pose:
+def foot_in_the_air(pose: Pose, index: int, behind: Array, body: KneelingBody) -> Pose:
     """A foot half-way back, off the floor."""
-    lifted = _foot_back(pose, index, behind, body)
+    lifted = foot_back(pose, index, behind, body)
     ankles, planted = pose.ankles.copy(), pose.planted.copy()
     ankles[index] = 0.5 * (pose.ankles[index] + behind[index]) + body.lifted_m * UP
     planted[index] = 0.0

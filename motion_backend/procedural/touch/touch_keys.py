@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from motion_backend.procedural.touch.gestures import Burst
+from motion_backend.procedural.touch.bursts import Burst
 from motion_backend.procedural.touch.reach_keys import ElbowPole, ReachTable
 from scene_graphs.data_tables import read_table, table
 

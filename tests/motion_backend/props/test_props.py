@@ -31,7 +31,8 @@ HOLDING = [(skill, caption) for skill, caption in KNOWN if held_in(skill, captio
 THINGS = r"\b(cup|book|paper|phone|controller|guitar|pillow|toys|keyboard)\b"
 DOINGS = (
     r"\b(both hands hold|carrying|sweeping|combing|knitting|hugging"
-    r"|writing|eating|drinking|pouring|stirring|wiping with)\b"
+    r"|writing|eating|drinking|pouring|stirring|wiping with"
+    r"|brushing the teeth|drying the hair|lifting weights|singing)\b"
 )
 """What is only done with something, where a caption does not say with what."""
 NOTHING = r"face"

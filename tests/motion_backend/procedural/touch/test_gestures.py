@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import cache
 
@@ -22,7 +23,7 @@ from motion_backend.motion import Action, Character, Emotion, Motion, PhaseKind,
 from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_styles import lie_style
-from motion_backend.procedural.sit.sit_pose import SURFACES
+from motion_backend.procedural.sit.sit_pose import PILLOWS, SURFACES
 from motion_backend.procedural.sit.sit_styles import sit_style
 from motion_backend.procedural.touch.gestures import gesture, gesture_names
 from motion_backend.procedural.touch.hand_captions import handling_of, with_both_hands
@@ -58,6 +59,10 @@ SITTING = {
     "yawning while seated, right hand at the mouth": "yawn_seated",
     "wiping the face while seated, with the right hand": "wipe_face",
     "praying while seated, palms together": "pray",
+    "raising a cup while seated, in the right hand": "toast",
+    "sighing while seated, shoulders sinking": "sigh_seated",
+    "asleep in the seat, head sunk to the chest": "doze",
+    "head on folded arms on the table": "sleep_on_arms",
 }
 SPOT = [caption for caption in captions()[Skill.LOCO] if walk_style(Emotion.NEUTRAL, caption).doing]
 SPOT = [caption for caption in SPOT if walk_style(Emotion.NEUTRAL, caption).stays]
@@ -113,7 +118,7 @@ def test_a_caption_of_sitting_is_shown_by_the_hands(caption: str) -> None:
     assert figures.reached
     assert figures.pen_max <= 0.05
     busy = max(moved(joints, LEFT, 60), moved(joints, RIGHT, 60))
-    still = style.doing in ("", "music", "cry", "hug")
+    still = style.doing in ("", "music", "cry", "hug", "doze", "sleep_on_arms")
     assert busy < 0.012 if still else 0.015 < busy < 0.45
     speed = np.linalg.norm(np.diff(joints[:, [LEFT, RIGHT]], axis=0), axis=-1) * 30
     assert speed.max() < 7.0
@@ -169,8 +174,9 @@ def test_who_does_something_on_the_spot_is_seen_to_do_it_with_both_feet_where_th
     assert verdict.missed == (), (mood, verdict.missed)
     assert fastest_joint(motion.local_rotations, motion.fps)[1] < FASTEST
     jumps = "jump" in caption
-    assert (motion.contacts[:, :2] == 1).all() == (not jumps)
-    assert (motion.contacts[:, 2:].min() == 1) == ("kick" not in caption and not jumps)
+    off_floor = jumps or "kneeling" in caption
+    assert (motion.contacts[:, :2] == 1).all() == (not off_floor)
+    assert (motion.contacts[:, 2:].min() == 1) == (not off_floor and not re.search("kick|tapping the foot", caption))
     feet = joints[:, [INDEX["left_ankle"], INDEX["right_ankle"]]]
     assert np.linalg.norm(feet[-1] - feet[0], axis=-1).max() < 0.01
     # Arms hang again, and the trunk is as it was.
@@ -190,6 +196,28 @@ def test_who_jumps_falls_as_everything_falls() -> None:
         curve = np.polyfit(time, joints[start:stop, 0, 1], 2)
         assert 0.2 < time[-1] < 0.5
         assert -2 * curve[0] == pytest.approx(9.8, rel=0.25)
+
+
+def test_who_kneels_is_on_both_knees_on_the_heels_and_up_again() -> None:
+    _, joints = performed(
+        Action(Skill.LOCO, "kneeling on the floor, hands on thighs", Emotion.SAD, hold=9.0, keyframe=1)
+    )
+    knees = joints[:, [INDEX["left_knee"], INDEX["right_knee"]], 1]
+    # One knee after the other goes down, and comes up.
+    down = knees < 0.12
+    assert down.all(axis=1).mean() > 0.3
+    assert (down.sum(axis=1) == 1).any()
+    low = joints[:, 0, 1] < 0.4
+    assert low.any()
+    assert down.all(axis=1)[low].all()
+    assert joints[-1, 0, 1] == pytest.approx(joints[0, 0, 1], abs=0.02)
+
+
+def test_where_no_table_is_it_is_said_that_no_head_lies_on_it() -> None:
+    caption = "head on folded arms on the table"
+    motion, _ = seated(caption)
+    assert any("no table" in note.words for note in motion.notes)
+    assert sit_style(Emotion.NEUTRAL, caption).arms == PILLOWS
 
 
 def test_who_goes_somewhere_to_do_it_there_walks_there_as_one_walks() -> None:
