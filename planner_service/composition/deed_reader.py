@@ -280,7 +280,7 @@ class DeedReader:
             return False
         if deed.is_gesture and not deed.row.stands:
             own = (*deed.row.captions, *deed.row.seated, *deed.row.lying)
-            return any(one.caption in own for one in keyframes)
+            return any(one.caption in own or shows(one.skill, one.caption, clause, own=True) for one in keyframes)
         if _says_so(deed, clause) and any(one.caption in deed.row.captions for one in keyframes):
             return True
         by_table, likely = is_shown(clause, deed, keyframes), self.likely(clause)

@@ -86,6 +86,8 @@ _MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
 _REFUSED: Final = {"sit": Skill.SITDOWN, "lie": Skill.LIEDOWN}
+_ON_KNEES: Final = {"praying, palms together": "praying while kneeling, palms together"}
+"""What who kneels goes on to do there."""
 _STANDS: Final = ("stand", "stands", "stood")
 _DESK: Final = re.compile(r"writing|typing")
 """Captions that want a table under the hands."""
@@ -417,6 +419,10 @@ class KeyframeWriter:
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self.places.has(one)), "floor")
+        if last is not None and last.caption.startswith("kneeling") and caption in _ON_KNEES:
+            self.keyframes[-1] = last.model_copy(update={"caption": _ON_KNEES[caption]})
+            self.body.show(index)
+            return
         stood, self._opening = self._opening, opening_of(Skill.LOCO, read.text)
         same = last is not None and last.skill is Skill.LOCO and (last.caption, last.furniture) == (caption, piece)
         if same and (stood is self._opening or self._opening is None):  # who stood still looks out of the window then
