@@ -204,6 +204,8 @@ class DeedReader:
     def deed(self, clause: Clause, about: str = "") -> Deed | None:
         """The deed of a clause, see `deed_of`; None where nothing that a body does shows it."""
         found, likely = self._deed(clause, about), self.likely(clause)
+        if found is not None and found.skill is Skill.LIEDOWN and not found.named and _falls(clause):
+            return replace(found, pieces=("floor",))
         if found is not None and likely is not None and found.skill in RISINGS:
             return replace(found, skill=_rising(found, likely))
         found = _in_particular(found, likely, clause) if found is not None and likely is not None else found
@@ -402,6 +404,13 @@ def _says_so(deed: Deed, clause: Clause) -> bool:
         return False  # "draws up a bench", "draws a bath"
     own = [one for one in deed.row.captions if any(part in one for part in IN_HANDS)]
     return bool(own) and deed.skill is deed.row.skill and all(shows(deed.skill, one, clause, own=True) for one in own)
+
+
+def _falls(clause: Clause) -> bool:
+    """Whether somebody falls where they are: "trips and falls", not "falls asleep"."""
+    return clause.verb in ("fall", "trip", "slip", "tumble", "stumble") and not {"asleep", "sleep", "into"} & {
+        *clause.lemmas
+    }
 
 
 def _falls_into_bed(deed: Deed, clause: Clause) -> bool:

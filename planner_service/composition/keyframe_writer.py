@@ -396,7 +396,9 @@ class KeyframeWriter:
                 self.keyframes[-1] = last.model_copy(update={"caption": ways[0]})
             self.body.show(index)
             return
-        if self.body.resting is None and not deed.named and any(one.skill in RISINGS for one in self.keyframes):
+        rose = any(one.skill in RISINGS for one in self.keyframes)
+        out = self._clause is not None and self._clause.verb in ("crawl", "climb", "scramble")  # from under a sink
+        if self.body.resting is None and not deed.named and (rose or out):
             self.why[index] = "the body is on its feet already"
             return
         if self.body.resting is None:
