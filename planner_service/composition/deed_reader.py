@@ -33,7 +33,7 @@ from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import grammar, lemma_of
-from planner_service.themes.opening_words import opening_of
+from planner_service.themes.opening_words import comes_in, opening_of
 from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
@@ -227,6 +227,8 @@ class DeedReader:
             return told
         if told is not None and told.row.captions and opening_of(told.skill, clause.text):
             return told  # every home has doors and windows
+        if told is not None and told.skill is Skill.LOCO and comes_in(clause.text):
+            return told
         skill, best = likely.best
         most = likely.captions[skill, best]
         known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
@@ -382,7 +384,7 @@ def _in_particular(deed: Deed, likely: Likely, clause: Clause) -> Deed:
     """A deed of which the table has no more than its skill, with the captions that show how it is done: "sits
     upright"; none in which hands do what is not told of."""
     row, known = deed.row, _idle(deed.skill, _learned(deed.skill), clause)
-    if row.captions or row.why or deed.skill is not row.skill:
+    if row.captions or row.why or deed.skill is not row.skill or comes_in(clause.text):
         return deed
     most = likely.of(deed.skill, known)
     some = tuple(one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most)

@@ -124,7 +124,7 @@ def on_seat_ahead(
 
 def on_place_ahead(deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat], reader: DeedReader) -> Deed:
     """Who gets down to do something does so where that is done: "kneels | to look under the sofa"."""
-    if deed.named or deed.skill is not Skill.TOUCH or read.clause.verb not in _DOWN:
+    if deed.named or read.clause.verb not in _DOWN or not (deed.skill is Skill.TOUCH or deed.is_gesture):
         return deed
     purpose = next((one for one in nexts[:1] if one.clause.joint == "to"), None)
     then = reader.deed(purpose.clause) if purpose is not None else None

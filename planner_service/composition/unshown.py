@@ -7,6 +7,7 @@ from collections.abc import Collection, Sequence
 from typing import Final
 
 from motion_backend.motion import Skill
+from motion_backend.props import held_in
 from planner_service.composition.deed_lexicon import deed_table, pieces_in, said_row
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
@@ -27,6 +28,7 @@ _PLACE: Final = re.compile(
 """Where a deed is told to be done."""
 _ON: Final = frozenset(("on top of", "on", "onto", "upon"))
 _HIDDEN: Final = frozenset(("under", "underneath", "beneath", "behind", "in", "into", "inside", "through"))
+_UNDER: Final = frozenset(("under", "underneath", "beneath"))
 _OFTEN: Final = re.compile(
     r"\b(?:twice|thrice|(?:two|three|four|five|six|seven|eight|nine|ten|a dozen|many|several|a hundred) times"
     r"|again and again|over and over(?: again)?|one by one|one after (?:another|the other))\b",
@@ -80,11 +82,15 @@ def _words(text: str) -> list[str]:
 def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     """What hands do it to, and with what, of things that are kept somewhere: a hand that is laid there has none of
     them, and what is carried is a box."""
-    done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor]
+    done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor] or list(keyframes)
     bare = bool(done) and all(_BARE.search(one.caption) for one in done)
-    if not bare or clause.verb in theme_words()["sought_verbs"] or clause.quotes:
+    if clause.verb in theme_words()["sought_verbs"] or clause.quotes:
         return []
-    told = _OBJECT.finditer(clause.text.partition(" ")[2])
+    told = [one for one in _OBJECT.finditer(clause.text.partition(" ")[2]) if bare or one["with"]]
+    held = [held_in(one.skill, one.caption) for one in done]
+    seen = {lemma_of(word) for one in done for word in _words(one.caption)}
+    seen |= {grip.prop for one in held if one is not None for grip in one.props}
+    told = [one for one in told if bare or lemma_of(_words(one["what"])[-1]) not in seen]
     found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]
     return found[:1]
 
@@ -103,7 +109,7 @@ def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     for place in _PLACE.finditer(clause.text):
         how, what = place["how"].lower(), place["what"]
         beside_verb = clause.text[: place.start()].strip() == first
-        if beside_verb and clause.verb in theme_words()["particle_verbs"]:
+        if beside_verb and how not in _UNDER and clause.verb in theme_words()["particle_verbs"]:
             continue
         if _is_place(what) and not any(_is_at(one, how, what) for one in keyframes):
             found.append(place[0])
@@ -126,7 +132,8 @@ def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
     if keyframe.skill is Skill.LOCO:  # it stands before it
         return there and how not in _ON | _HIDDEN
     if keyframe.skill is Skill.TOUCH:  # what hands do to a thing is seen where it is kept
-        return there or not pieces
+        under = how in _UNDER and "prone" not in keyframe.caption.lower() and bool(pieces)
+        return (there and not under) or not pieces
     under = (
         how in _HIDDEN and bool(pieces) and not any(affords(piece, "sit") or affords(piece, "lie") for piece in pieces)
     )

@@ -20,6 +20,9 @@ KNOCKING = keyframe(Skill.TOUCH, "knocking with the right hand", "wardrobe")
 DANCING = keyframe(Skill.LOCO, "dancing steps, arms swinging", "table")
 WRITING = keyframe(Skill.SITDOWN, "writing at the table, right hand moving", "office chair")
 READING = keyframe(Skill.SITDOWN, "reading, book held in both hands", "armchair")
+LOW = keyframe(Skill.TOUCH, "touch low height", "bed")
+WALKING = keyframe(Skill.LOCO, "steadily walking forward", "floor")
+SWEEPING = keyframe(Skill.LOCO, "sweeping the floor with both hands", "floor")
 CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
 
 
@@ -34,6 +37,9 @@ CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
         ("He waters the plants.", AT_THE_PLANT, ()),
         ("She carries a spider away.", CARRYING, ("a spider",)),
         ("She carries a box away.", CARRYING, ()),
+        ("She comes home with a suitcase.", WALKING, ("with a suitcase",)),
+        ("He sweeps the floor with a broom.", SWEEPING, ()),
+        ("She looks under the bed.", LOW, ("under the bed",)),
         ("She dances on the table.", DANCING, ("on the table",)),
         ("He writes her name in the dust on the shelf.", WRITING, ("on the shelf",)),
         ("He writes at the desk.", WRITING, ()),
