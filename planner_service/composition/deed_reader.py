@@ -111,7 +111,8 @@ _THINGS: Final = re.compile(
 
 _AT_TABLES: Final = ("dining chair", "chair", "office chair")
 """Seats that stand at tables."""
-_RESTING: Final = ("sit", "lie", "perch", "sink", "settle", "flop", "slump", "collapse")
+_RESTING: Final = frozenset(("sit", "lie", "perch", "sink", "settle", "flop", "slump", "collapse", "stretch", "sprawl",
+                             "lounge", "curl", "recline", "rest", "drop", "stay", "sleep"))  # fmt: skip
 """Verbs of which who sits or lies there is all that is told."""
 _NOT_DRAWN: Final = grammar().prepositions | frozenset(
     (
@@ -243,6 +244,9 @@ class DeedReader:
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
             return told
+        takes = told is not None and told.skill is Skill.TOUCH and clause.verb in theme_words()["taking_verbs"]
+        if takes and skill is not Skill.TOUCH and told is not None and told.row.captions:
+            return told  # nobody writes because a letter is taken
         if told is not None and (_says_so(told, clause) or _falls_into_bed(told, clause)):
             return told
         if told is not None and most < MOUTHED and _only_seems(likely.best, clause):

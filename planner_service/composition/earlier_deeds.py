@@ -11,11 +11,31 @@ from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import Deed, deed_table, object_of, pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.opening_words import meant_by_it
 from planner_service.themes.sentence_parser import Clause
 
+_REMEMBERED: Final = 6
+"""Beats back to which "it" reaches."""
 _RETURNS: Final = ("go", "return", "get", "come", "sit", "walk", "settle", "sink", "crawl", "climb", "head")
 _MAT: Final = re.compile(r"\b(?:mat|rug|carpet|floor)\b")
 _RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
+
+
+def spelt_out(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequence[ReadBeat]]:
+    """A beat, and all of them, with what "it" is in its clause: who sits down at a desk and "opens it" opens the diary
+    that was named before."""
+    read = beats[index]
+    meant = meant_by_it(read.text, [one.text for one in beats[max(index - _REMEMBERED, 0) : index]])
+    if not meant:
+        return read, beats
+    verb, _, rest = (
+        read.clause.text.split(" ", 2) if read.clause.text.count(" ") > 1 else (*read.clause.text.split(" "), "")
+    )
+    told = " ".join(filter(None, (verb, "the", meant, rest)))
+    lemmas = (*read.clause.lemmas[:1], "the", lemma_of(meant), *read.clause.lemmas[2:])
+    read = replace(read, clause=replace(read.clause, text=told, lemmas=lemmas))
+    return read, [*beats[:index], read, *beats[index + 1 :]]
 
 
 def done_before(

@@ -31,7 +31,7 @@ from planner_service.composition.deed_lexicon import (
 )
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
-from planner_service.composition.earlier_deeds import done_before
+from planner_service.composition.earlier_deeds import done_before, spelt_out
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import (
@@ -168,6 +168,7 @@ class KeyframeWriter:
         """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
         read = beats[index]
         beat = read.beat
+        read, beats = spelt_out(index, beats)
         deed = self._deed(index, beats) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         nexts = beats[index + 1 :]

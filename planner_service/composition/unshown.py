@@ -41,7 +41,8 @@ _EACH: Final = re.compile(
     re.IGNORECASE,
 )
 _OBJECT: Final = re.compile(
-    r"(?:^|\b(?P<with>with ))(?:(?:up|down|out|away|off|on|together) )?"
+    r"(?:^|\b(?P<with>with ))(?:(?:(?:him|her|them|my)sel(?:f|ves)|him|her|them|me) )?"
+    r"(?:(?:up|down|out|away|off|on|together) )?"
     r"(?P<what>(?:the|an?|his|her|their|my|its|some|every|two|three|four) (?:[\w'-]+ ){0,2}?[\w'-]+)"
     r"(?= (?:in|on|at|to|into|onto|from|for|with|under|behind|off|out|up|down|away|back|over|again|and|while|until"
     r"|\w+ly)\b"

@@ -23,7 +23,7 @@ from motion_backend.procedural.touch.hand_contacts import suits
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
-from planner_service.grounding.lingering import lingering
+from planner_service.grounding.dwell_time import lingering
 from planner_service.grounding.opening_places import LACKS, OpeningPlace, entry, opening_place
 from planner_service.grounding.running_places import LONG_ENOUGH, runs, way_to_run
 from planner_service.grounding.seat_tables import done_at_tables

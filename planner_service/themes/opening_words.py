@@ -35,7 +35,9 @@ _OPENS: Final = re.compile(
     re.IGNORECASE,
 )
 _TO_THE_DOOR: Final = re.compile(
-    rf"\b(?:to|at|by|near|behind|towards?|for) {_OF_A_HOUSE}(?:door|doorway|entrance)(?!\w| of)", re.IGNORECASE
+    rf"\b(?:to|at|by|near|behind|towards?|for) {_OF_A_HOUSE}(?:door|doorway|entrance)(?!\w| of)"
+    r"|\b(?:see|check|look) who\b",
+    re.IGNORECASE,
 )
 _TO_THE_WINDOW: Final = re.compile(
     r"\b(?:to|towards?|over to) (?:the|a|an|his|her|their|my|its) (?:\w+ )?windows?(?!\w| (?:sill|seat))", re.IGNORECASE
@@ -58,6 +60,7 @@ _NOT_IN: Final = re.compile(
 _HANDLES_IT: Final = re.compile(
     r"\b((?:open|clos|shut|slam|bang|lock|unlock|bolt|latch|crack|push|pull|fling|throw)\w*) (it)\b", re.IGNORECASE
 )
+_BEGINS_SO: Final = re.compile(r"(?:open|clos|shut|unwrap|unfold|unseal)\w* (?:it|them)\b", re.IGNORECASE)
 _MAY_BE_OPENED: Final = re.compile(
     r"\b(?:(window|curtain|blind|shutter)s?|(door)s?|letters?|envelopes?|parcels?|packages?|presents?|gifts?|box(?:es)?"
     r"|drawers?|books?|diary|album|fridge|refrigerator|freezer|cupboards?|wardrobe|closet|cabinet|chest|bags?|suitcase|case"
@@ -86,6 +89,15 @@ def opening_of(skill: Skill, said: str) -> Kind | None:
     if skill is Skill.LOCO:
         return "window" if _LOOKS.search(said) else "door" if _TO_THE_DOOR.search(said) else None
     return None
+
+
+def meant_by_it(said: str, before: Sequence[str]) -> str:
+    """What "it" is in words that begin with opening or closing it: the last named before that can be opened, a diary or
+    a door; "" where that is unknown."""
+    if not _BEGINS_SO.match(said):
+        return ""
+    named = (match[0] for text in reversed(before) for match in reversed([*_MAY_BE_OPENED.finditer(text)]))
+    return next(named, "").lower()
 
 
 def goes_to_window(said: str) -> bool:

@@ -366,6 +366,8 @@ def _parted(clause: Clause, words: Sequence[Token], main: int, source: str) -> l
         denied = last in ("not", "never") and low.endswith("ing") and bool(verb_of(low))
         theirs = clause.verb == "wait" and any(word.low == "for" for word in words[main:place])
         purpose = moves and last == "to" and not theirs and _is_purpose(words, place)
+        if purpose and low in ("see", "check", "look") and any(word.low == "who" for word in words[place:]):
+            continue  # "goes to see who it is": to the door
         if denied or purpose or (moves and _is_beside(low, last)):
             stop = place - (purpose or denied)
             if stop <= main:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Action, Emotion, Skill
-from planner_service.grounding.lingering import LONGER, lingering
+from planner_service.grounding.dwell_time import LONGER, lingering
 
 STANDING = Action(Skill.LOCO, "stand still", Emotion.NEUTRAL)
 AT_A_WINDOW = Action(Skill.LOCO, "stand still", Emotion.NEUTRAL, goal=(1.0, 2.0), stands=2.5)
