@@ -74,6 +74,7 @@ class Bounce:
     """From here on a walk is seen to bounce,"""
     seen_within_m: float
     """wholly so from so much more."""
+    grows_steps: float
     skip_m: float
     skip_at_phase: float
     skip_lower_ratio: float
@@ -101,7 +102,9 @@ def lifted(pose: Pose, route: Route, steps: Steps, style: Walk, skeleton: Skelet
 
     row, pelvis = pelvis_table().height, pose.pelvis.copy()
     carried, ending = _carried(route, steps, style, skeleton, in_stride)
-    wanted = carried + skeleton.scale * ending * _bounce(route, steps, style)
+    # Who goes on from another walk comes to bounce more than one is seen to over the first steps.
+    grown = smooth((steps.phase - steps.phase[0]) / pelvis_table().bounce.grows_steps) if in_stride else 1.0
+    wanted = carried + skeleton.scale * ending * _bounce(route, steps, style, grown)
     leg = -float(skeleton.offsets[INDEX["left_knee"], 1] + skeleton.offsets[INDEX["left_ankle"], 1]) * row.leg_share
     limits = []
     for index, name in enumerate(("left", "right")):
@@ -143,13 +146,14 @@ def _bounces(style: Walk) -> float:
     return float(smooth((style.bounce - row.seen_from_m) / row.seen_within_m))
 
 
-def _bounce(route: Route, steps: Steps, style: Walk) -> Array:
+def _bounce(route: Route, steps: Steps, style: Walk, grown: Array | float) -> Array:
     """Up and down with the steps: highest over the standing leg, in running and skipping in the air. (T,)."""
     row = pelvis_table().bounce
     quick = np.clip(route.speed / row.usual_mps, row.min_ratio, row.max_ratio)
     if style.double > 0:
         beat = -steps.wave(row.at_phase)
-        walked = style.bounce * quick * beat - style.stamp * landing(steps)
+        size = style.bounce - (1 - grown) * max(style.bounce - row.seen_from_m, 0.0)
+        walked = size * quick * beat - style.stamp * landing(steps)
     else:
         walked = style.bounce * np.minimum(quick, 1.0) * (np.cos(2 * np.pi * steps.phase) - row.run_lower_ratio)
     skipped = row.skip_m * (steps.wave(row.skip_at_phase) - row.skip_lower_ratio) * row.skip_share

@@ -14,7 +14,7 @@ from motion_backend.procedural.emotion_style import Bearing
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.pose_solver import solve
-from motion_backend.procedural.touch.hand_rests import HOLDS, at_rest, on_thing
+from motion_backend.procedural.touch.hand_rests import HOLDS, at_rest, on_thing, sliding
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton, build_skeleton
 
@@ -82,3 +82,15 @@ def test_a_hand_on_a_thing_comes_to_it_and_the_other_stays_as_it_was() -> None:
     assert wrist[1] == pytest.approx(1.042, abs=0.02)
     assert np.linalg.norm(wrist[[0, 2]] - [0.2, 0.3]) < 0.12
     np.testing.assert_allclose(laid.arms[1], pose.arms[1])
+
+
+def test_hands_on_thighs_slide_a_little_now_and_then_and_lie_at_the_end_where_they_lay() -> None:
+    held = rested("thighs", 1.7).repeat(300)
+    moved = sliding(held, (HOLDS["thighs"], HOLDS["thighs"]), np.random.default_rng(0), 1.0)
+    gone = np.linalg.norm(moved.reach - held.reach, axis=-1)
+    assert (gone.max(axis=0) > 0.01).all()
+    assert gone.max() < 0.045
+    np.testing.assert_allclose(gone[[0, -1]], 0.0, atol=1e-9)
+    # Hands that lie on each other, or on a thing, stay.
+    folded = sliding(held, (HOLDS["folded"], HOLDS["folded_over"]), np.random.default_rng(0), 1.0)
+    np.testing.assert_array_equal(folded.reach, held.reach)

@@ -146,6 +146,16 @@ def test_a_turn_goes_on_at_one_rate(frames: int) -> None:
     assert steps.max() * max(frames - 0.5 * FPS, 1) < 1.5
 
 
+@pytest.mark.parametrize(("degrees", "within"), [(45, 1.0), (90, 1.0), (-90, 1.2), (135, 1.5), (180, 1.9)])
+def test_who_turns_on_the_spot_steps_round_and_soon_stands(degrees: int, within: float) -> None:
+    start = standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+    style, rng = walk_style(Emotion.NEUTRAL, "walk"), np.random.default_rng(0)
+    turned = walk(start, np.zeros((2, 2)), np.radians(degrees), style, SKELETON, rng)
+    lifts = int((np.diff(turned.planted, axis=0) < 0).sum())
+    assert 2 <= lifts <= 4
+    assert (np.flatnonzero(turned.planted.min(axis=1) < 1)[-1] + 2) / FPS <= within
+
+
 def test_arms_hang_down_from_a_bent_trunk() -> None:
     def behind(caption: str) -> float:
         """How far an upper arm points back in the mean, as a slope."""
