@@ -272,7 +272,10 @@ class KeyframeWriter:
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
         if self.body.resting is not None and only_stands_for(self.body.resting, read, deed, self.reader):
-            self.why[index] = UNSHOWN  # nobody gets up for what would show no more
+            if shows(self.body.resting.skill, self.body.resting.caption, read.clause):
+                self.body.show(index)
+            else:
+                self.why[index] = UNSHOWN  # nobody gets up for what would show no more
             return
         if deed.skill is Skill.TOUCH and self._is_on_body(index, read):
             return
