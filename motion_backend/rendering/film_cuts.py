@@ -77,7 +77,7 @@ class Cut:
     stop: int
     close: Framing | None = None
     reach: Framing | None = None
-    """Where hands touch something, whether that is worth a look from near or not."""
+    """Where hands touch or hold something, whether that is worth a look from near or not."""
 
     @property
     def whole(self) -> Framing:
@@ -110,7 +110,7 @@ def film_cuts(
             again = mood is seen if close.subject is Subject.FACE else before.subject is Subject.HANDS
             if rest <= 0 or (again and rest < AGAIN):
                 close = None
-        yield Cut(start, stop, close, finder.reach(start, stop))
+        yield Cut(start, stop, close, finder.deed(start, stop))
         before = close or before
         seen = mood if close is not None and close.subject is Subject.FACE else seen
 
@@ -165,6 +165,10 @@ class _Finder:
         ]
         return bool((np.abs(up) < LYING).mean() > 0.2)
 
+    def deed(self, start: int, stop: int) -> Framing | None:
+        """The frames in which something is touched, else those in which it is in hand, and the hands that do so."""
+        return self.reach(start, stop) or next(self._holding(start, stop), None)
+
     def reach(self, start: int, stop: int) -> Framing | None:
         """The frames in which something is touched, and with which hands."""
         touches = [p for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop and p.stop > start]
@@ -206,8 +210,8 @@ class _Finder:
         hands = tuple(np.asarray(HANDS)[busy].tolist())
         return self._around(start, stop, middle, Subject.FACE, hands, STILL)
 
-    def _held(self, start: int, stop: int) -> Framing | None:
-        """The hands, where something is in them for most of a while."""
+    def _holding(self, start: int, stop: int) -> Iterator[Framing]:
+        """Frames in which something is in some hands for a while."""
         for track in self.props:
             first, last = max(start, track.start), min(stop, track.stop)
             if last - first < CLOSE_SECONDS * self.motion.fps:
@@ -215,8 +219,14 @@ class _Finder:
             there = track.positions[first - track.start : last - track.start]
             away = np.linalg.norm(self.joints[first:last, HANDS] - there[:, None], axis=-1).mean(axis=0)
             hands = tuple(np.asarray(HANDS)[away < max(IN_HAND, away.min() + 1e-6)].tolist())
-            found = self._around(start, stop, (first + last) // 2, Subject.HANDS, hands, HELD)
-            if found is not None and first <= found.start and found.stop <= last:
+            yield Framing(first, last, Subject.HANDS, hands)
+
+    def _held(self, start: int, stop: int) -> Framing | None:
+        """The hands, where something is in them for most of a while."""
+        for held in self._holding(start, stop):
+            middle = (held.start + held.stop) // 2
+            found = self._around(start, stop, middle, Subject.HANDS, held.hands, HELD)
+            if found is not None and held.start <= found.start and found.stop <= held.stop:
                 return found
         return None
 

@@ -68,10 +68,11 @@ WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
 """The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
 WATCHED: Final = 3.0
 """What it counts to see the face of who does not walk, in a shot of the whole,"""
-QUARTER, PROFILE = 0.8, 1.6
-"""as well as from this turn (radians) on the less; from the other it is lost."""
-NEAR_SIDE: Final = 0.8
-"""What it counts to have the hand that does something on the camera's side of the trunk."""
+QUARTER, PROFILE = (0.8, 1.6), (1.3, 1.8)
+"""from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, and of who
+does."""
+HAND_HIDDEN: Final = 2.0
+"""What it counts to have furniture before the hands that do something."""
 EVERY: Final = 4
 """Frames between two at which it is asked how far a body goes."""
 ALONG: Final = 0.8
@@ -200,9 +201,9 @@ class _Director:
                 score = float(liked[index]) + sight.score(camera, poses)
                 score -= FAR * _distance(camera)
                 if len(watched):
-                    score += WATCHED * _is_faced(ahead, -camera.axes[2])
+                    score += WATCHED * _is_faced(ahead, -camera.axes[2], PROFILE if framing.deed else QUARTER)
                 if framing.deed is not None:
-                    score += NEAR_SIDE * self._on_near_side(framing, camera)
+                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), self._doing(framing)).mean())
                 score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
                 scored.append(_View(score - self._broken(camera, before, start), camera))
         return _sorted(scored)
@@ -219,13 +220,10 @@ class _Director:
         walks = [p for p in self.motion.phases if p.kind is PhaseKind.WALK]
         return np.array([f for f in frames.tolist() if not any(p.start <= f < p.stop for p in walks)], np.int64)
 
-    def _on_near_side(self, framing: Framing, camera: Camera) -> float:
-        """How far on the camera's side of the trunk the hands are that do something, -1 to 1."""
+    def _doing(self, framing: Framing) -> Array:
+        """Where the hands are that do something, in the midst of it. (H, 3)."""
         start, stop = framing.deed or (framing.start, framing.stop)
-        frame = (start + stop - 1) // 2
-        aside = self.joints[frame, list(framing.hands)].mean(axis=0) - self.joints[frame, INDEX["spine3"]]
-        aside, towards = aside[[0, 2]], -camera.axes[2][[0, 2]]
-        return float(aside @ towards) / max(float(np.linalg.norm(aside) * np.linalg.norm(towards)), 1e-9)
+        return self.joints[(start + stop - 1) // 2, list(framing.hands)]
 
     def _outlook(self, start: int, stop: int) -> Outlook | None:
         """The window that the body looks out of in some frames."""
@@ -328,9 +326,10 @@ def _faces(ahead: Array, towards: Array) -> float:
     return FACED * float(np.mean(np.where(turn < WIDEST, np.cos(turn - 0.5), -1.0)))
 
 
-def _is_faced(ahead: Array, towards: Array) -> float:
-    """How well a face is turned to a camera, 1 to a quarter turned, 0 in profile and less from behind."""
-    return float(np.clip((PROFILE - _turns(ahead, towards)) / (PROFILE - QUARTER), -1.0, 1.0).mean())
+def _is_faced(ahead: Array, towards: Array, turns: tuple[float, float]) -> float:
+    """How well a face is turned to a camera: 1 up to the first of two turns, 0 at the second, and less from behind."""
+    least, most = turns
+    return float(np.clip((most - _turns(ahead, towards)) / (most - least), -1.0, 1.0).mean())
 
 
 def _turns(ahead: Array, towards: Array) -> Array:

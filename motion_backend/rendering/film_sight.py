@@ -44,8 +44,9 @@ FACED: Final = {Subject.BODY: 0.15, Subject.FACE: 0.30, Subject.HANDS: 0.05}
 """How much of a face is to be seen, as a share of what is seen of it from the front: a profile is 0.4."""
 FRONT: Final = 0.40
 """How far forward the skin of a face looks, at least: the cosine."""
-STRAIGHT, ENOUGH_FACE = 0.8, 0.75
-"""The share of a face's skin that is seen from the front, foreshortened; and what of that is enough."""
+STRAIGHT, ENOUGH_FACE, BESIDE_DEED = 0.8, 0.75, 0.45
+"""The share of a face's skin that is seen from the front, foreshortened; what of that is enough, and what is
+where hands do something."""
 LOOKS: Final = 4
 """Bodies at which faces and hands are looked at, about."""
 FACE_SLACK: Final = 0.03
@@ -58,10 +59,10 @@ MUCH: Final = 0.6
 """From which share of the way to the body on nothing is much nearer."""
 APPEALS: Final = (2.0, 1.2, 1.2)
 """What it counts to see all of the near side of a body, of its head or hands, and of what is held."""
-TO_FACE, TO_DEED = 3.0, 2.0
+TO_FACE, TO_DEED = 3.0, 2.5
 """What it counts to see all of a face that must be seen, and of the hands that do what is done."""
-VEILED: Final = 2.0
-"""What it counts to have all of the trunk, head and arms hidden for a second: a thin lamp is a third of that."""
+VEILED: Final = 3.0
+"""What it counts to have all of a body behind things for a second: behind a thin lamp is a fourth of it."""
 VOID: Final = 5.0
 """What it counts to have nothing but what is outside of a home in the picture."""
 BEFORE: Final = 0.86
@@ -221,7 +222,8 @@ class Appearances:
         face = self._face_share(near, camera)
         if face is None:
             return Look(shown, appeal)
-        return Look(shown, appeal + TO_FACE * min(face / ENOUGH_FACE, 1.0), face >= FACED[self.subject])
+        enough = BESIDE_DEED if self.doing is not None and self.doing.any() else ENOUGH_FACE
+        return Look(shown, appeal + TO_FACE * min(face / enough, 1.0), face >= FACED[self.subject])
 
     def _face_share(self, near: Real, camera: Camera) -> float | None:
         """How much of the face is seen in the mean of the frames in which it must be, as a share of what is from the
@@ -253,10 +255,9 @@ class Appearances:
         return min(2.0 * float(np.mean(found)), 1.0)
 
     def _veiled(self, near: Real, camera: Camera) -> float:
-        """How much of trunk, head and arms things hide in the worst second."""
-        upper = np.flatnonzero(~self.legs)[::SPARSE]
+        """How much of a body things hide in the worst second."""
         hidden = [
-            1.0 - float(self._seen(near, points[upper].astype(np.float64), camera, SLACK[Subject.BODY]).mean())
+            1.0 - float(self._seen(near, points[::SPARSE].astype(np.float64), camera, SLACK[Subject.BODY]).mean())
             for points in self.vertices
         ]
         long = max(1, min(len(hidden), round(FPS / EVERY[self.subject])))
