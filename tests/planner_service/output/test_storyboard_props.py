@@ -33,7 +33,7 @@ def test_what_is_held_is_seen_in_the_picture_of_its_moment(skill: Skill, caption
     home, motion, role = setting(trial.room).home, motions[-1], Role(captions=acted_captions(actions))
     stage = _Stage(home, motion, motion.joint_positions(), home_props(home), Acting.of(motion, role), role)
     index = int(motion.actions[-1])
-    panel = _panel(stage, index, Keyframe(skill=skill, caption=caption), None)
+    panel = _panel(stage, index, Keyframe(skill=skill, caption=caption), None, ())
     bare = replace(stage, acting=replace(stage.acting, props=()))
     camera = _camera(stage, panel.shot)
     shown = np.any(_picture(stage, panel.shot, camera) != _picture(bare, panel.shot, camera), axis=-1)
