@@ -50,12 +50,15 @@ BROW: Final = 0.0066
 MOUTH: Final = (0.0, 0.6330)
 MOUTH_HALF, GAP, UPPER, LOWER = 0.0255, 0.0012, 0.0044, 0.0060
 """Half of the mouth's breadth and of the line between its lips; how high the lips are."""
+TEETH: Final = 0.5
+"""How much of an open mouth upper teeth fill."""
 DEPTH: Final = (0.0, 0.16)
 """Along z, from inside any head to before it."""
 HALVINGS: Final = 18
 LIFTS: Final = {
     "white": 0.0012, "iris": 0.0020, "pupil": 0.0026, "glint": 0.0031, "lower lid": 0.0034, "lid": 0.0038,
-    "lash": 0.0044, "brow": 0.0024, "mouth": 0.0014, "lips": 0.0022,
+    "lash": 0.0044, "brow": 0.0024, "mouth": 0.0014,
+    "teeth": 0.0018, "lips": 0.0022,
 }  # fmt: skip
 """Metres that each lies above the head."""
 WHITE, BLACK, INSIDE = (0.95, 0.94, 0.92), (0.05, 0.04, 0.05), (0.28, 0.09, 0.09)
@@ -179,14 +182,14 @@ def _brow(color: Color, breadth: float) -> _Feature:
     half = (BROW_OUT[0] - BROW_IN[0]) / 2
 
     def line(u: Array) -> Array:
-        return BROW_ARCH * (1 - (u - 0.1) ** 2)
+        return BROW_ARCH * (1 - u**2) + (BROW_OUT[1] - BROW_IN[1]) / 2 * u
 
     def thick(u: Array) -> Array:
         return breadth / 2 * (0.62 - 0.38 * u)
 
     moves = {
         "brows_up": (lambda u: 0 * u + 0.0065,) * 2,
-        "brows_angry": (lambda u: -0.0035 - 0.0055 * -u + 0.0005,) * 2,
+        "brows_angry": (lambda u: 0.0075 * u - 0.0030,) * 2,
         "brows_sad": (lambda u: 0.0020 - 0.0055 * u,) * 2,
     }
     return _band("brow", color, middle, half, (lambda u: line(u) + thick(u), lambda u: line(u) - thick(u)), moves)
@@ -209,8 +212,11 @@ def _mouth(lips: Color, ratio: float) -> Iterator[_Feature]:
     both: dict[str, tuple[Curve, Curve]] = {"smile": smile, "mouth_skew": skew}
     wide = {"smile": 0.20, "mouth_wide": 0.24, "mouth_open": -0.10}
     upper = (lambda u: arc(GAP)(u) + bow(u), arc(GAP))
+    teeth = (lift, lambda u: (1 - TEETH) * lift(u) + TEETH * drop(u))
     lower = (arc(-GAP), lambda u: -arc(GAP)(u) - arc(LOWER * ratio)(u))
     yield _band("mouth", INSIDE, MOUTH, MOUTH_HALF, (arc(GAP), arc(-GAP)), both | {"mouth_open": (lift, drop)}, wide)
+    rows = (arc(GAP), arc(GAP))
+    yield _band("teeth", WHITE, MOUTH, MOUTH_HALF, rows, both | {"mouth_open": teeth}, wide)
     yield _band("lips", lips, MOUTH, MOUTH_HALF, upper, both | {"mouth_open": (lift, lift)}, wide)
     yield _band("lips", lips, MOUTH, MOUTH_HALF, lower, both | {"mouth_open": (drop, drop)}, wide)
 

@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Emotion, Motion, PhaseKind
 from motion_backend.props import PropTrack
@@ -40,6 +41,8 @@ TO_HEAD: Final = 0.30
 HANDS: Final = (INDEX["left_wrist"], INDEX["right_wrist"])
 BOTH: Final = 0.8
 """The share of the one hand's way from hanging from which the other one has a part in it too."""
+LYING: Final = 0.5
+"""How upright a pelvis is at most, as the height of its own up, of who lies."""
 _ELBOWS: Final = (INDEX["left_elbow"], INDEX["right_elbow"])
 _SHOULDERS: Final = (INDEX["left_shoulder"], INDEX["right_shoulder"])
 _HEAD: Final = INDEX["head"]
@@ -62,6 +65,8 @@ class Framing:
     subject: Subject = Subject.BODY
     hands: tuple[int, ...] = ()
     """The wrists that have a part in it."""
+    deed: Frames | None = None
+    """Frames in which these hands are what it is about; of a look from near all are."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +76,15 @@ class Cut:
     start: int
     stop: int
     close: Framing | None = None
+    reach: Framing | None = None
+    """Where hands touch or hold something, whether that is worth a look from near or not."""
+
+    @property
+    def whole(self) -> Framing:
+        """All of it, with the hands that must be seen."""
+        if self.reach is None:
+            return Framing(self.start, self.stop)
+        return Framing(self.start, self.stop, hands=self.reach.hands, deed=(self.reach.start, self.reach.stop))
 
 
 def film_cuts(
@@ -96,7 +110,7 @@ def film_cuts(
             again = mood is seen if close.subject is Subject.FACE else before.subject is Subject.HANDS
             if rest <= 0 or (again and rest < AGAIN):
                 close = None
-        yield Cut(start, stop, close)
+        yield Cut(start, stop, close, finder.deed(start, stop))
         before = close or before
         seen = mood if close is not None and close.subject is Subject.FACE else seen
 
@@ -140,9 +154,23 @@ class _Finder:
     def close_up(self, start: int, stop: int, changed: bool) -> Framing | None:
         """The hand where something is touched, else the face where the mood is another or the head is what matters,
         else the hands in which something is."""
+        if self._lies(start, stop):
+            return self._face(start, stop, changed)
         return self._touch(start, stop) or self._face(start, stop, changed) or self._held(start, stop)
 
-    def _touch(self, start: int, stop: int) -> Framing | None:
+    def _lies(self, start: int, stop: int) -> bool:
+        """Whether somebody lies in some of the frames: of them nothing is looked at from near but the face."""
+        up = rotations.rotate(self.motion.local_rotations[start:stop, 0].astype(np.float64), np.array([0.0, 1.0, 0.0]))[
+            :, 1
+        ]
+        return bool((np.abs(up) < LYING).mean() > 0.2)
+
+    def deed(self, start: int, stop: int) -> Framing | None:
+        """The frames in which something is touched, else those in which it is in hand, and the hands that do so."""
+        return self.reach(start, stop) or next(self._holding(start, stop), None)
+
+    def reach(self, start: int, stop: int) -> Framing | None:
+        """The frames in which something is touched, and with which hands."""
         touches = [p for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop and p.stop > start]
         if not touches:
             return None
@@ -151,7 +179,13 @@ class _Finder:
         hand = int(away.max(axis=0).argmax())
         there = np.flatnonzero(away[:, hand] > away[:, hand].max() - 0.08)
         hands = HANDS if away[there].min(axis=1).mean() > BOTH * away.max() else (HANDS[hand],)
-        return self._around(start, stop, first + int(there[0] + there[-1]) // 2, Subject.HANDS, hands, HELD)
+        return Framing(first + int(there[0]), first + int(there[-1]) + 1, Subject.HANDS, hands)
+
+    def _touch(self, start: int, stop: int) -> Framing | None:
+        reach = self.reach(start, stop)
+        if reach is None:
+            return None
+        return self._around(start, stop, (reach.start + reach.stop - 1) // 2, Subject.HANDS, reach.hands, HELD)
 
     def _from_hanging(self, first: int, last: int) -> Array:
         """How far each hand is from where it would hang (metres): a hand that touches is, bent or stretched, and one
@@ -176,8 +210,8 @@ class _Finder:
         hands = tuple(np.asarray(HANDS)[busy].tolist())
         return self._around(start, stop, middle, Subject.FACE, hands, STILL)
 
-    def _held(self, start: int, stop: int) -> Framing | None:
-        """The hands, where something is in them for most of a while."""
+    def _holding(self, start: int, stop: int) -> Iterator[Framing]:
+        """Frames in which something is in some hands for a while."""
         for track in self.props:
             first, last = max(start, track.start), min(stop, track.stop)
             if last - first < CLOSE_SECONDS * self.motion.fps:
@@ -185,8 +219,14 @@ class _Finder:
             there = track.positions[first - track.start : last - track.start]
             away = np.linalg.norm(self.joints[first:last, HANDS] - there[:, None], axis=-1).mean(axis=0)
             hands = tuple(np.asarray(HANDS)[away < max(IN_HAND, away.min() + 1e-6)].tolist())
-            found = self._around(start, stop, (first + last) // 2, Subject.HANDS, hands, HELD)
-            if found is not None and first <= found.start and found.stop <= last:
+            yield Framing(first, last, Subject.HANDS, hands)
+
+    def _held(self, start: int, stop: int) -> Framing | None:
+        """The hands, where something is in them for most of a while."""
+        for held in self._holding(start, stop):
+            middle = (held.start + held.stop) // 2
+            found = self._around(start, stop, middle, Subject.HANDS, held.hands, HELD)
+            if found is not None and held.start <= found.start and found.stop <= held.stop:
                 return found
         return None
 

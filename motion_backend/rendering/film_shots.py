@@ -8,7 +8,7 @@ between two parts of one shot of the whole.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
-from motion_backend.motion import Motion
+from motion_backend.motion import Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points, prop_tracks
 from motion_backend.rendering.camera import FOV, YAWS, Shot, liking
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
@@ -66,6 +66,15 @@ FACED, WIDEST = 1.2, 1.2
 """What it counts to see a face, best at a quarter turned, and the turn in radians from which it is none."""
 WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
 """The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
+WATCHED: Final = 3.0
+"""What it counts to see the face of who does not walk, in a shot of the whole,"""
+QUARTER, PROFILE = (0.8, 1.6), (1.3, 1.8)
+"""from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, and of who
+does."""
+HAND_HIDDEN: Final = 2.0
+"""What it counts to have furniture before the hands that do something."""
+EVERY: Final = 4
+"""Frames between two at which it is asked how far a body goes."""
 ALONG: Final = 0.8
 """What it counts to look along an arm, of which then nothing is seen."""
 STEEP, LIES = (1.0, 0.3), 0.5
@@ -76,7 +85,7 @@ AT_DOOR: Final = 3.0
 """What it counts in the first shot to see the door by which somebody comes in."""
 TO_WINDOW: Final = 4.0
 """What it counts to see the window that somebody looks out of."""
-TRIES: Final = 8
+TRIES: Final = 12
 """Views of a shot of which pictures are looked at."""
 
 
@@ -106,7 +115,7 @@ def film_shots(
     director = _Director(motion, joints, turns, FilmSet.of(home), aspect, props)
     before: FilmShot | None = None
     for cut in film_cuts(motion, joints, starts, role, edit, props):
-        whole = director.shot(cut.start, cut.stop, before)
+        whole = director.shot(cut.whole, before)
         for part in _parts(cut, whole, director):
             yield part
             before = part
@@ -139,9 +148,10 @@ class _Director:
     props: tuple[PropTrack, ...]
     """What is in the hands."""
 
-    def shot(self, start: int, stop: int, before: FilmShot | None) -> FilmShot:
-        """The best view, unlike the one before, in which the body is hidden for no more than a moment, else least."""
-        return self._best(Framing(start, stop), self._views(start, stop, before))[0]
+    def shot(self, framing: Framing, before: FilmShot | None) -> FilmShot:
+        """The best view, unlike the one before, in which the body is hidden for no more than a moment, else least; of
+        who does not walk one with the face, if there is any."""
+        return self._best(framing, self._views(framing, before))[0]
 
     def close_up(self, close: Framing, before: FilmShot) -> FilmShot | None:
         """The same from near; None where something hides it from all cameras, or is in the way of all, and of who
@@ -157,18 +167,21 @@ class _Director:
         that shows most; and whether it is enough."""
         start, stop = framing.start, framing.stop
         bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
-        found: list[tuple[tuple[bool, float], FilmShot]] = []
+        if self._outlook(start, stop) is not None:
+            bodies = replace(bodies, face=None)
+        found: list[tuple[tuple[tuple[bool, bool, bool], float], FilmShot]] = []
         for view in views[:TRIES]:
             scene = self.set.seen(view.camera, self.joints[start:stop])
             look = bodies.look(scene, view.camera)
-            rank = (look.enough, view.score + look.appeal if look.enough else look.shown)
-            found.append((rank, FilmShot(start, stop, view.camera, scene, framing.subject)))
-        (enough, _), best = max(found, key=lambda one: one[0])
-        return best, enough
+            worth = view.score + look.appeal if any(look.rank) else look.shown
+            found.append(((look.rank, worth), FilmShot(start, stop, view.camera, scene, framing.subject)))
+        (rank, _), best = max(found, key=lambda one: one[0])
+        return best, rank[0]
 
-    def _views(self, start: int, stop: int, before: FilmShot | None) -> list[_View]:
+    def _views(self, framing: Framing, before: FilmShot | None) -> list[_View]:
         """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet, with the
         door that it comes in by or the window that it looks out of."""
+        start, stop = framing.start, framing.stop
         frames = _sampled(start, stop)
         poses = self.joints[frames]
         shown: list[tuple[Entrance | Outlook | None, float]] = [
@@ -176,7 +189,9 @@ class _Director:
             (self._outlook(start, stop), TO_WINDOW),
         ]
         openings = [(one, worth) for one, worth in shown if one is not None]
-        points = np.concatenate([poses.reshape(-1, 3), *(one.corners for one, _ in openings)])
+        points = np.concatenate([self._reached(start, stop), *(one.corners for one, _ in openings)])
+        watched = np.empty(0, np.int64) if shown[1][0] is not None else self._watched(frames)
+        ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
         scored = []
@@ -185,9 +200,30 @@ class _Director:
                 camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
                 score = float(liked[index]) + sight.score(camera, poses)
                 score -= FAR * _distance(camera)
+                if len(watched):
+                    score += WATCHED * _is_faced(ahead, -camera.axes[2], PROFILE if framing.deed else QUARTER)
+                if framing.deed is not None:
+                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), self._doing(framing)).mean())
                 score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
                 scored.append(_View(score - self._broken(camera, before, start), camera))
         return _sorted(scored)
+
+    def _reached(self, start: int, stop: int) -> Array:
+        """Where joints and the crown go in some frames, at the height of a jump too. (N, 3)."""
+        frames = np.arange(start, stop, EVERY)
+        high = start + int(self.joints[start:stop, INDEX["head"], 1].argmax())
+        frames = np.unique([*frames.tolist(), high, stop - 1])
+        return np.concatenate([self.joints[frames].reshape(-1, 3), _crowns(self.joints[frames], self.turns[frames])])
+
+    def _watched(self, frames: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Those of some frames in which nobody walks."""
+        walks = [p for p in self.motion.phases if p.kind is PhaseKind.WALK]
+        return np.array([f for f in frames.tolist() if not any(p.start <= f < p.stop for p in walks)], np.int64)
+
+    def _doing(self, framing: Framing) -> Array:
+        """Where the hands are that do something, in the midst of it. (H, 3)."""
+        start, stop = framing.deed or (framing.start, framing.stop)
+        return self.joints[(start + stop - 1) // 2, list(framing.hands)]
 
     def _outlook(self, start: int, stop: int) -> Outlook | None:
         """The window that the body looks out of in some frames."""
@@ -257,10 +293,15 @@ def _sorted(views: Sequence[_View]) -> list[_View]:
     return sorted(views, key=lambda view: -round(view.score, 6))
 
 
+def _crowns(poses: Array, turns: Array) -> Array:
+    """Where the tops of heads are. (P, 3)."""
+    up = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))
+    return np.asarray(poses[:, INDEX["head"]] + CROWN * up)
+
+
 def _head(poses: Array, turns: Array) -> Array:
     """Crown, neck and shoulders. (N, 3)."""
-    up = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))
-    crown = poses[:, INDEX["head"]] + CROWN * up
+    crown = _crowns(poses, turns)
     names = ("neck", "left_shoulder", "right_shoulder")
     return np.concatenate([crown, poses[:, [INDEX[name] for name in names]].reshape(-1, 3)])
 
@@ -283,6 +324,12 @@ def _faces(ahead: Array, towards: Array) -> float:
     """How well a face that looks `ahead` (P, 3) is seen from where `towards` (3,) points to."""
     turn = _turns(ahead, towards)
     return FACED * float(np.mean(np.where(turn < WIDEST, np.cos(turn - 0.5), -1.0)))
+
+
+def _is_faced(ahead: Array, towards: Array, turns: tuple[float, float]) -> float:
+    """How well a face is turned to a camera: 1 up to the first of two turns, 0 at the second, and less from behind."""
+    least, most = turns
+    return float(np.clip((most - _turns(ahead, towards)) / (most - least), -1.0, 1.0).mean())
 
 
 def _turns(ahead: Array, towards: Array) -> Array:

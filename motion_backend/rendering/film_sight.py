@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from motion_backend.body.mannequin_mesh import build_mannequin
 from motion_backend.body.skinning import skin
-from motion_backend.motion import Motion
+from motion_backend.motion import FPS, Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points
 from motion_backend.rendering.film_cuts import Framing, Subject
 from motion_backend.rendering.rasterizer import Camera, Real
@@ -38,12 +38,33 @@ ASKED: Final = {Subject.BODY: (0.4, 0.5), Subject.FACE: (0.0, 0.7), Subject.HAND
 behind a table is."""
 ENOUGH: Final = 0.96
 """The share of looks in which it is."""
+HALF_HIDDEN: Final = 0.6
+"""The same, if that is the price for a face."""
+FACED: Final = {Subject.BODY: 0.15, Subject.FACE: 0.30, Subject.HANDS: 0.05}
+"""How much of a face is to be seen, as a share of what is seen of it from the front: a profile is 0.4."""
+FRONT: Final = 0.40
+"""How far forward the skin of a face looks, at least: the cosine."""
+STRAIGHT, ENOUGH_FACE, BESIDE_DEED = 0.8, 0.75, 0.45
+"""The share of a face's skin that is seen from the front, foreshortened; what of that is enough, and what is
+where hands do something."""
+LOOKS: Final = 4
+"""Bodies at which faces and hands are looked at, about."""
+FACE_SLACK: Final = 0.03
+"""Metres that a face may be behind what hides it."""
+STANDS: Final = 0.3
+"""The share of looks in which nobody walks from which on a face must be seen."""
 CROWDED: Final = 0.12
 """The share of a picture that may be of what is much nearer than the body: a wall, the back of a screen."""
 MUCH: Final = 0.6
 """From which share of the way to the body on nothing is much nearer."""
 APPEALS: Final = (2.0, 1.2, 1.2)
 """What it counts to see all of the near side of a body, of its head or hands, and of what is held."""
+TO_FACE, TO_DEED = 3.0, 2.5
+"""What it counts to see all of a face that must be seen, and of the hands that do what is done."""
+VEILED: Final = 3.0
+"""What it counts to have all of a body behind things for a second: behind a thin lamp is a fourth of it."""
+VOID: Final = 5.0
+"""What it counts to have nothing but what is outside of a home in the picture."""
 BEFORE: Final = 0.86
 """Up to which share of the way to the body something is in the foreground,"""
 LOW, TALL = 0.3, 0.8
@@ -72,6 +93,13 @@ class Look:
     """The share of frames in which enough of the body and its part is seen; less where the picture is crowded."""
     appeal: float
     """How much of them is seen, in what surroundings: counts as the scores of `camera` do."""
+    faced: bool = True
+    """Whether the face is seen where it must be."""
+
+    @property
+    def rank(self) -> tuple[bool, bool, bool]:
+        """What of two views decides before all else: one without the face is taken only where there is none with it."""
+        return self.enough and self.faced, self.faced and self.shown >= HALF_HIDDEN, self.enough
 
     @property
     def enough(self) -> bool:
@@ -100,6 +128,14 @@ class Appearances:
     faces: NDArray[np.integer]
     """(F, 3) triangles of the body."""
     subject: Subject = Subject.BODY
+    face: NDArray[np.bool_] | None = None
+    """Which vertices look forward from a head. (V,); None for a body whose face nobody asks for."""
+    watched: NDArray[np.bool_] | None = None
+    """In which frames the face must be seen. (T,)."""
+    hand: NDArray[np.bool_] | None = None
+    """Which vertices are the hands' that do what is done. (V,)."""
+    doing: NDArray[np.bool_] | None = None
+    """In which frames they do. (T,)."""
     held: tuple[Array, ...] = ()
     """Points of what is in the hands, (N, 3) each, of as many frames; N may be none."""
 
@@ -115,7 +151,11 @@ class Appearances:
         part = np.isin(mesh.joints[:, 0], framing.hands if framing.subject is Subject.HANDS else INDEX["head"])
         head, legs = (np.isin(mesh.joints[:, 0], joints) for joints in (INDEX["head"], LEGS))
         held = tuple(prop_points(props, frame) for frame in frames.tolist()) if props else ()
-        return Appearances(vertices, normals, areas, part, head, legs, aspect, mesh.faces, framing.subject, held)
+        hand, doing = _doing(mesh.joints[:, 0], framing, frames)
+        return Appearances(
+            vertices, normals, areas, part, head, legs, aspect, mesh.faces, framing.subject,
+            head & (mesh.normals[:, 2] > FRONT), _watched(motion, frames), hand, doing, held,
+        )  # fmt: skip
 
     @cached_property
     def size(self) -> tuple[int, int]:
@@ -176,7 +216,58 @@ class Appearances:
         shown = float(np.mean(seen)) - max(before - CROWDED, 0.0)
         body, part, held = APPEALS
         appeal = float(shares.mean(axis=0) @ (body, part)) + held * self._held_share(near, camera)
-        return Look(shown, appeal - FOREGROUND * self._foreground(near, camera) - CLUTTER * self._clutter(near, camera))
+        appeal -= FOREGROUND * self._foreground(near, camera) + CLUTTER * self._clutter(near, camera)
+        appeal -= VOID * float((~(near > 0)).mean()) + VEILED * self._veiled(near, camera)
+        appeal += TO_DEED * self._deed_share(near, camera)
+        face = self._face_share(near, camera)
+        if face is None:
+            return Look(shown, appeal)
+        enough = BESIDE_DEED if self.doing is not None and self.doing.any() else ENOUGH_FACE
+        return Look(shown, appeal + TO_FACE * min(face / enough, 1.0), face >= FACED[self.subject])
+
+    def _face_share(self, near: Real, camera: Camera) -> float | None:
+        """How much of the face is seen in the mean of the frames in which it must be, as a share of what is from the
+        front; None where it need not."""
+        if self.face is None or self.watched is None or not self.watched.any():
+            return None
+        where = np.flatnonzero(self.watched)[:: max(1, self.watched.sum() // LOOKS)]
+        weights, found = self.areas[self.face], []
+        for points, normals in zip(self.vertices[where], self.normals[where], strict=True):
+            own, before = points[self.face].astype(np.float64), self._with_body(near, points, camera)[0]
+            towards = np.asarray(camera.eye) - own
+            cosine = np.einsum("vk,vk->v", normals[self.face], towards) / np.linalg.norm(towards, axis=1)
+            seen = self._seen(before, own, camera, FACE_SLACK)
+            found.append(float((weights * np.clip(cosine, 0.0, 1.0)) @ seen / weights.sum()) / STRAIGHT)
+        return float(np.mean(found))
+
+    def _deed_share(self, near: Real, camera: Camera) -> float:
+        """How much of the hands that do what is done is seen, with the body and all else that may be before them; 0
+        where none does anything."""
+        if self.hand is None or self.doing is None or not self.hand.any() or not self.doing.any():
+            return 0.0
+        where = np.flatnonzero(self.doing)[:: max(1, self.doing.sum() // LOOKS)]
+        found = []
+        for points in self.vertices[where]:
+            before = self._with_body(near, points, camera)[0]
+            own = points[self.hand].astype(np.float64)
+            found.append(float(self._seen(before, own, camera, SLACK[Subject.HANDS]).mean()))
+        # Of a hand that nothing hides the half that is turned away is.
+        return min(2.0 * float(np.mean(found)), 1.0)
+
+    def _veiled(self, near: Real, camera: Camera) -> float:
+        """How much of a body things hide in the worst second."""
+        hidden = [
+            1.0 - float(self._seen(near, points[::SPARSE].astype(np.float64), camera, SLACK[Subject.BODY]).mean())
+            for points in self.vertices
+        ]
+        long = max(1, min(len(hidden), round(FPS / EVERY[self.subject])))
+        return float(np.convolve(hidden, np.full(long, 1.0 / long), "valid").max())
+
+    def _seen(self, before: Real, points: Array, camera: Camera, slack: float) -> NDArray[np.bool_]:
+        """Which points (N, 3) of a home are in the picture, and not so far behind what is nearest. (N,)."""
+        viewed = camera.view(points)
+        viewed[:, 2] = np.maximum(viewed[:, 2] - slack, NEAREST)
+        return self._free(before, camera.project(viewed, self.size))
 
     def _held_share(self, near: Real, camera: Camera) -> float:
         """How much of what is held is in the picture with nothing before it; none where nothing is held."""
@@ -229,3 +320,24 @@ class Appearances:
             ring = (away > RING[0]) & (away < RING[1]) & (down < CHIN * radius)
             found.append(float(edges[ring].mean()) if ring.any() else 0.0)
         return min(float(np.mean(found)) / CLUTTERED, 1.0)
+
+
+def _watched(motion: Motion, frames: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """In which frames nobody walks; in none where that is but a moment. (T,)."""
+    still = ~np.any(
+        [(frames >= p.start) & (frames < p.stop) for p in motion.phases if p.kind is PhaseKind.WALK], axis=0
+    )
+    still = np.broadcast_to(still, frames.shape)
+    return still if still.mean() >= STANDS else np.zeros(len(frames), dtype=bool)
+
+
+def _doing(
+    joints: NDArray[np.integer], framing: Framing, frames: NDArray[np.integer]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which vertices, by their joints (V,), are the hands' that do what is done, and in which frames. (V,) and (T,)."""
+    doing = np.zeros(len(frames), dtype=bool)
+    if framing.deed is not None:
+        first, stop = framing.deed
+        doing = (frames >= first) & (frames < stop)
+        doing[np.abs(frames - (first + stop) // 2).argmin()] = True
+    return np.isin(joints, framing.hands), doing

@@ -22,6 +22,7 @@ from motion_backend.rendering.film_frames import film_frames
 from motion_backend.rendering.film_picture import lay_words
 from motion_backend.rendering.film_shots import FilmShot, film_shots
 from motion_backend.rendering.title_place import Place, title_place
+from planner_service.output.film_deeds import deeds
 from planner_service.output.film_letters import lettered, titled
 from planner_service.output.film_pages import Subtitle, subtitles
 from scene_graphs.errors import UserError
@@ -80,7 +81,8 @@ class Filmed:
     def words(self) -> list[Subtitle]:
         """The told words, by frames of the motion."""
         titled = round(FIRST_WORDS * self.motion.fps) if self.told.title.strip() else 0
-        return subtitles(self.told, self.segments, self.motion.fps, titled)
+        own = deeds(self.told, self.motion, self.segments, self.role)
+        return subtitles(self.told, self.segments, self.motion.fps, titled, own)
 
     @cached_property
     def edit(self) -> FilmEdit:

@@ -24,6 +24,8 @@ DONE: Final = 2.5
 """Seconds after which what a keyframe does is being done, at most: until then one sits down to it."""
 SHORTEST: Final = 1.5
 """Seconds between two that follow each other."""
+FASTEST: Final = 16.0
+"""Letters a second at most, with signs and gaps, at which words are read that others follow soon."""
 QUICK: Final = 0.7
 """Share of their reading time that words are shown at least, though what they tell is over."""
 SENTENCE: Final = re.compile(r"[^.!?…]+[.!?…]*[\"”’')\]]*\s*")
@@ -85,6 +87,10 @@ class _Line:
         read = round(sum(map(_read, self.pages)) * fps)
         return max(self.begins, min(self.aim - read // 2, self.over - read))
 
+    def needs(self, fps: int) -> int:
+        """Frames in which its words can just be read."""
+        return sum(round(max(SHORTEST, len(page.text) / FASTEST) * fps) + 1 for page in self.pages)
+
     def stop(self, fps: int) -> int:
         """The frame at which what it tells is over, as soon as its words could be read quickly."""
         return max(self.over, self.start(fps) + round(QUICK * sum(map(_read, self.pages)) * fps))
@@ -98,19 +104,30 @@ class _Page:
     slanted: tuple[tuple[int, int], ...]
 
 
-def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled: int = 0) -> list[Subtitle]:
+def subtitles(
+    told: Told,
+    segments: Sequence[tuple[int, int]],
+    fps: int,
+    titled: int = 0,
+    deeds: Sequence[int] = (),
+) -> list[Subtitle]:
     """The told words, each half of its reading time before its last keyframe is being done, and no longer than until
-    that is over if they can be read by then; none before frame `titled`.
+    that is over if they can be read by then; none before frame `titled`, nor before what they tell, whose first frames
+    `deeds` may name by keyframe, unless they could not be read then.
 
     What tells no keyframe is shown with what follows, and what is done at nearly the same time together. What is told
     and not seen is slanted; whole sentences of it that would stand alone are left out. `segments` are frames of
     keyframes.
     """
-    lines = _lines(told, segments, fps, titled)
-    starts = [line.start(fps) for line in lines]
+    ways = (
+        [(max(start, deed), stop) for (start, stop), deed in zip(segments, deeds, strict=True)] if deeds else segments
+    )
+    lines = _lines(told, ways, fps, titled)
+    end = max((stop for _, stop in segments), default=0)
+    starts = _legible(lines, fps, titled, end)
     shown: list[Subtitle] = []
-    for line, start, latest in zip(lines, starts, [*starts[1:], *(stop for _, stop in segments[-1:])], strict=False):
-        stop = min(latest, line.stop(fps))
+    for line, start, latest in zip(lines, starts, [*starts[1:], end], strict=False):
+        stop = min(latest, max(line.stop(fps), start + line.needs(fps)))
         letters = list(accumulate((len(page.text) for page in line.pages), initial=0))
         cuts = [start + round((stop - start) * part / max(letters[-1], 1)) for part in letters]
         shown += [
@@ -119,6 +136,19 @@ def subtitles(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled:
             if end > begin
         ]
     return shown
+
+
+def _legible(lines: Sequence[_Line], fps: int, titled: int, end: int) -> list[int]:
+    """When lines are shown: earlier than they would be where the next ones, or the end, leave no time to read them."""
+    starts: list[int] = []
+    for line in reversed(lines):
+        end = min(line.start(fps), end - line.needs(fps))
+        starts.insert(0, end)
+    before = titled
+    for at, line in enumerate(lines):
+        starts[at] = max(starts[at], before)
+        before = starts[at] + line.needs(fps) if at + 1 < len(lines) else before
+    return starts
 
 
 def _lines(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled: int) -> list[_Line]:

@@ -180,3 +180,18 @@ def test_morphs_go_with_the_head() -> None:
     moved = skin(mesh, skeleton, np.zeros((1, 3)), pose, shares)[0] - skin(mesh, skeleton, np.zeros((1, 3)), pose)[0]
     assert moved[0, :, 2].min() < -0.003, "the left of who looks along +X is -Z"
     assert np.abs(moved[0, : mesh.morphs.first]).max() == 0.0
+
+
+@pytest.mark.parametrize("emotion", list(Emotion))
+def test_nobody_scowls_but_who_is_angry(emotion: Emotion) -> None:
+    _, mesh = body_of("tom")
+    assert mesh.morphs is not None
+    faces = expression(emotion) @ mesh.morphs.offsets.reshape(len(UNITS), -1)
+    moved = mesh.vertices[mesh.morphs.first :] + faces.reshape(-1, 3)[: len(mesh.vertices) - mesh.morphs.first]
+    names = [mesh.materials[index].name for index in mesh.face_materials]
+    brow = np.unique(mesh.faces[[name == "face brow" for name in names]]) - mesh.morphs.first
+    brow = brow[moved[brow, 0] > 0]  # the left one
+    x, y = moved[brow, 0], moved[brow, 1]
+    within, outside = y[x < np.quantile(x, 0.2)].mean(), y[x > np.quantile(x, 0.8)].mean()
+    assert (within < outside - 0.004) == (emotion is Emotion.ANGRY)
+    assert emotion is Emotion.ANGRY or within > outside - 0.001

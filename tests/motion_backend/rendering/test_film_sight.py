@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from motion_backend.motion import Character, Motion
+from motion_backend import rotations
+from motion_backend.motion import Character, Motion, Phase, PhaseKind
 from motion_backend.rendering.film_cuts import Framing, Subject
 from motion_backend.rendering.film_sight import Appearances, Look
 from motion_backend.rendering.rasterizer import orbit
@@ -78,3 +80,82 @@ def test_a_lampshade_behind_a_head_is_a_clutter_and_glass_and_what_is_elsewhere_
     assert standing_with(upright(*shade, z=-1.0)) < free - 0.3
     assert standing_with(upright(*shade, z=-1.0, opacity=0.25)) == free
     assert standing_with(upright((0.8, 0.9), (1.1, 1.2), z=-1.0)) == free
+
+
+def lying(yaw: float) -> Motion:
+    """One frame of who lies on their back, the head at -z, turned about the vertical."""
+    motion = with_knees_drawn_up(0.0)
+    down = np.array([-np.sin(np.pi / 4), 0.0, 0.0, np.cos(np.pi / 4)])
+    motion.local_rotations[0, 0] = rotations.compose(rotations.yaw_to_quat(yaw), down)
+    motion.root_positions[0, 1] = 0.6
+    return motion
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.9, 2.2, -1.6])
+def test_the_face_of_who_lies_is_seen_from_the_head_and_not_from_beneath(yaw: float) -> None:
+    seen = Appearances.of(lying(yaw), Framing(0, 1), 16 / 9)
+    above, beneath = (seen.look([], orbit((0.0, 0.6, 0.0), 4.0, yaw + 1.57, pitch)) for pitch in (0.9, -0.9))
+    assert above.faced
+    assert not beneath.faced
+    assert above.rank > beneath.rank
+    assert above.appeal > beneath.appeal
+
+
+@pytest.mark.parametrize(("yaw", "faced"), [(0.0, True), (0.8, True), (1.4, True), (2.4, False), (np.pi, False)])
+def test_a_view_from_behind_is_taken_only_where_there_is_none_with_the_face(yaw: float, faced: bool) -> None:
+    seen = Appearances.of(with_knees_drawn_up(0.0), Framing(0, 1), 16 / 9)
+    look = seen.look([], orbit((0.0, 0.9, 0.0), 4.0, yaw, 0.1))
+    assert look.faced == faced
+    front = seen.look([WALL], orbit((0.0, 0.9, 0.0), 4.0, 0.0, 0.1))
+    assert faced or look.rank < front.rank
+
+
+def test_a_face_that_a_lamp_hides_is_not_seen_and_a_thin_one_before_the_trunk_counts() -> None:
+    seen = Appearances.of(with_knees_drawn_up(0.0), Framing(0, 1), 16 / 9)
+    x, y, z = with_knees_drawn_up(0.0).joint_positions()[0, INDEX["head"]].tolist()
+    camera = orbit((0.0, 0.9, 0.0), 4.0, 0.0, 0.1)
+    free, shaded, thin = (
+        seen.look([WALL, *before], camera)
+        for before in (
+            [],
+            [upright((x - 0.3, y - 0.3), (x + 0.3, y + 0.4), z + 0.5)],
+            [upright((-0.05, 0.0), (0.05, 1.3), 0.5)],
+        )
+    )
+    assert free.faced
+    assert not shaded.faced
+    assert thin.faced
+    assert thin.appeal < free.appeal - 0.3
+
+
+def test_nobody_asks_for_the_face_of_who_walks() -> None:
+    motion = with_knees_drawn_up(0.0)
+    walks = replace(motion, phases=(Phase(PhaseKind.WALK, 0, 1),))
+    back = orbit((0.0, 0.9, 0.0), 4.0, np.pi, 0.1)
+    assert not Appearances.of(motion, Framing(0, 1), 16 / 9).look([], back).faced
+    assert Appearances.of(walks, Framing(0, 1), 16 / 9).look([], back).faced
+
+
+def test_a_hand_before_the_trunk_appeals_to_who_sees_it_and_not_to_who_is_behind() -> None:
+    motion = with_knees_drawn_up(0.0)
+    turn = rotations.axis_to_quat("y", np.array(-1.4))
+    motion.local_rotations[0, INDEX["left_shoulder"]] = turn  # out of the T-pose to the front
+    hand = motion.joint_positions()[0, INDEX["left_wrist"]]
+    assert hand[2] > 0.3
+    deed = Framing(0, 1, hands=(INDEX["left_wrist"],), deed=(0, 1))
+
+    def gain(yaw: float) -> float:
+        camera = orbit((0.0, 0.9, 0.0), 4.0, yaw, 0.1)
+        with_deed, without = (Appearances.of(motion, framing, 16 / 9) for framing in (deed, Framing(0, 1)))
+        return with_deed.look([], camera).appeal - without.look([], camera).appeal
+
+    assert gain(0.5) > 2.0
+    assert gain(np.pi) < 1.0
+
+
+def test_what_is_outside_of_a_home_is_no_picture() -> None:
+    seen = Appearances.of(with_knees_drawn_up(0.0), Framing(0, 1), 16 / 9)
+    camera = orbit((0.0, 0.9, 0.0), 4.0, 0.0, 0.1)
+    half = upright((-9.0, -9.0), (0.0, 9.0), -4.0)
+    nothing, some, full = (seen.look(scene, camera).appeal for scene in ([], [half], [WALL]))
+    assert nothing + 0.5 < some < full - 0.5
