@@ -179,6 +179,17 @@ def test_the_text_follows_the_film_and_leads_back_to_it(watched: dict[str, Any],
         assert words(moment["words"]) in words(story["text"][span["start"] : span["end"]])
 
 
+def test_words_that_are_told_and_not_acted_can_be_read(watched: dict[str, Any], story: dict[str, Any]) -> None:
+    text = story["text"]
+    assert [words(one["text"]) for one in watched["unseen"]] == [
+        words(text[one["start"] : one["end"]]) for one in story["thoughts"]
+    ]
+    assert watched["unseen"], "the theme has something that is only told"
+    for one in watched["unseen"]:
+        # Blanks at which a line breaks have no width.
+        assert one["box"] > 0.9 * one["letters"] > 0, one
+
+
 def test_how_one_sits_is_changed_beside_the_film_and_seen(
     watched: dict[str, Any], story: dict[str, Any], client: httpx.Client
 ) -> None:
