@@ -412,6 +412,7 @@ def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side
     assert [head.split(" · ")[0] for head in both["heads"]] == ["The story", "Take 1"]
     assert "What differs" in both["differs"]
     assert both["sideways"] <= 0
+    _in_step(told["steps"], [[one["start"] for one in story["keyframes"]] for story in (brief, take)])
 
     learned, backends = finished(client, told["learned"]), told["backends"]
     stories = (finished(client, brief["id"]), learned)
@@ -431,7 +432,6 @@ def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side
     assert "Take 2" in backends["differs"], "which is which stands over it"
     assert "Moved by" in backends["differs"], "what differs is named"
     assert "Seed" not in backends["differs"], "and what does not is not"
-    _in_step(told["steps"], [[one["start"] for one in story["keyframes"]] for story in stories])
     reasons = {phase["fallback"] for one in learned["report"]["keyframes"] for phase in one["phases"]} - {None}
     told_reasons = backends["movers"][1].count(" %: ")
     assert told_reasons >= len(reasons) > 0, "each reason is told of the backend that stood in"
