@@ -31,7 +31,7 @@ from planner_service.library.library import open_shelves
 from planner_service.output.replayed_story import ReplayedStory, is_story
 from planner_service.pipeline import Pipeline, RequestError, StoryRequest
 from planner_service.scripts.caption_actions import look_of
-from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as, usual
+from planner_service.scripts.caption_fallbacks import Words, hashed_words, not_seen, performed_as, usual
 from planner_service.scripts.captions import Vocabulary, captions, synonyms
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, legible
 from planner_service.settings import read_settings
@@ -219,9 +219,17 @@ def unknown_captions(keyframes: Sequence[Keyframe], words: Words = hashed_words)
         if (caption := look_of(keyframe.caption)) in (rows := known[keyframe.skill]):
             continue
         done = performed_as(keyframe.skill, caption, keyframe.mood, words)
-        how = "is read word by word" if done == caption else f"is unknown to the body, which does {done!r} instead"
-        told.append(f"{moment(number)}, caption: {caption!r} {how}{_perhaps(_meant(keyframe, caption, rows, words()))}")
+        near = [one for one in _meant(keyframe, caption, rows, words()) if one != done]
+        told.append(f"{moment(number)}, caption: {caption!r} {_how(keyframe.skill, caption, done)}{_perhaps(near)}")
     return told
+
+
+def _how(skill: Skill, caption: str, done: str) -> str:
+    """What the body makes of a caption that is none of its own."""
+    if done != caption:
+        return f"is unknown to the body, which does {done!r} instead"
+    lost = " and ".join(map(repr, not_seen(skill, caption)))
+    return f"is read word by word{f', and nothing of {lost} is seen' if lost else ''}"
 
 
 def _meant(keyframe: Keyframe, caption: str, rows: Sequence[str], words: Vocabulary) -> list[str]:

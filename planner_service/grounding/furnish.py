@@ -113,10 +113,25 @@ class Furnished:
                 line += f", where the script asks for a {' and a '.join(others).replace('_', ' ')}"
             line += "" if match.exact else " (another may fit better)"
             given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
+            given += [f"{asked} → {got} (one of its kind)" for asked, got in self._kinds(number)]
             pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
             pulls += [f"{self._name(number, move)} drawn up to its table" for move in match.drawn_up]
             lines.append("; ".join([line, *given, *[f"missing {name}" for name in match.missing], *pulls]))
         return lines
+
+    def _kinds(self, room: int) -> list[tuple[str, str]]:
+        """The words for furniture that are another's than those of the piece that stands there: "sofa" for a chaise
+        longue, each once."""
+        found = []
+        for keyframe, place in self._placed():
+            if place.room != room or place.object_id is None:
+                continue
+            asked, category = keyframe.piece[0], canonical(self.home.object(place.object_id).category)
+            if category in categories_of(asked) and category != canonical(asked):
+                given = display_name(category)
+                if not set(display_name(asked).split()) & set(given.split()):
+                    found.append((display_name(asked), given))
+        return list(dict.fromkeys(found))
 
     def _placed(self) -> Iterator[tuple[PlannedKeyframe, Place]]:
         return zip(self.script.keyframes, self.places, strict=True)

@@ -18,6 +18,7 @@ from motion_backend.formats.npz import write_npz
 from motion_backend.formats.usd_film import film_usd
 from motion_backend.metrics.figure_limits import held_against
 from motion_backend.metrics.figure_words import told_limits
+from motion_backend.motion import Action
 from planner_service.cast_choice import told_look
 from planner_service.grounding.keyframes_to_actions import action_to_dict
 from planner_service.narration.told import UNSEEN
@@ -26,6 +27,7 @@ from planner_service.output.replayed_story import ACTED, acted_to_dict
 from planner_service.output.storyboard import storyboard
 from planner_service.pipeline import Planned, Story
 from planner_service.scripts.caption_actions import look_of
+from planner_service.scripts.caption_fallbacks import not_seen
 from scene_graphs.errors import UserError
 from scene_graphs.home import home_to_dict
 
@@ -212,6 +214,8 @@ def told_notes(story: Story) -> list[str]:
                 f"“{instead}” is done, the body knows no “{story.planned.script.keyframes[action.keyframe].caption}”"
             )
             found.setdefault(words, []).append(action.keyframe)
+        elif lost := _lost(action):
+            found.setdefault(lost, []).append(action.keyframe)
     for note in story.motion.notes:
         found.setdefault(note.words, []).append(note.keyframe)
     return [
@@ -288,9 +292,16 @@ def _performances(story: Story) -> Iterator[dict[str, Any]]:
     for figure, action, span, instead in made:
         row = figure.to_dict() | {"performed_as": instead}
         phases = [phase for phase in story.motion.phases if span[0] <= phase.start < span[1]]
-        row["notes"] = [note.words for note in story.motion.notes if note.keyframe == action.keyframe]
+        lost = [] if instead or not _lost(action) else [_lost(action)]
+        row["notes"] = [*lost, *(note.words for note in story.motion.notes if note.keyframe == action.keyframe)]
         row["phases"] = [phase_to_dict(phase) for phase in phases]
         yield row
+
+
+def _lost(action: Action) -> str:
+    """Which words of a caption of one's own the body does not show, where it does the others; "" for none."""
+    words = " and ".join(f"“{word}”" for word in not_seen(action.skill, action.caption))
+    return f"nothing is seen of {words} in “{action.caption}”" if words else ""
 
 
 def _stand_ins(story: Story) -> list[str | None]:

@@ -12,7 +12,7 @@ from typing import Final
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
-from motion_backend.procedural.caption_coverage import understands
+from motion_backend.procedural.caption_coverage import understands, unread
 from planner_service.scripts.captions import Vocabulary, agree, captions, sides
 from scene_graphs.data_tables import read_table, table
 
@@ -79,3 +79,12 @@ def performed_as(skill: Skill, caption: str, mood: Emotion, words: Words) -> str
     known = words()
     nearest, score = known.nearest(skill, caption)
     return nearest if score >= known.least else usual(skill, mood, caption)
+
+
+def not_seen(skill: Skill, caption: str) -> tuple[str, ...]:
+    """The words of a caption of one's own that nothing of the body shows, where it does the others: those that change
+    nothing and are in no caption that it knows."""
+    if caption in captions()[skill.value] or not understands(skill, caption):
+        return ()
+    known = {word for row in captions()[skill.value] for word in re.findall(r"[a-z]+", row.lower())}
+    return tuple(word for word in unread(skill, caption) if word not in known)

@@ -1,6 +1,6 @@
 /** A story is played in a room that is brought in beside its script; as it was and as it is now play side by side. */
 
-import { complaints, overhang, scene, until } from "./browser.mjs";
+import { PATIENCE, complaints, overhang, scene, until } from "./browser.mjs";
 
 const ROOM = {
   id: "page-den",
@@ -51,6 +51,28 @@ async function withBackend(page, id, backend) {
 /** Where both films are. */
 const places = (page) => page.locator(".side input[type=range]").evaluateAll((all) => all.map((slider) => Number(slider.value)));
 
+/** The frames at which both films are, again and again, until each has begun with a moment. */
+async function together(page, ids, moment) {
+  const seen = [];
+  const starts = await Promise.all(ids.map((id) => startOf(page, id, moment)));
+  const deadline = performance.now() + PATIENCE;
+  while (!seen.length || starts.some((start, side) => !(seen.at(-1)[side] > start))) {
+    if (performance.now() > deadline) throw new Error(`they never came as far as ${starts}: ${seen.at(-1)}`);
+    seen.push(await page.evaluate(() => window.sims.state().both.map(({ frame }) => frame)));
+    await page.waitForTimeout(60);
+  }
+  return seen;
+}
+
+/** The first frame of a keyframe, once it is made. */
+async function startOf(page, id, keyframe) {
+  for (;;) {
+    const { keyframes } = await (await fetch(`${process.argv[2]}/v1/stories/${id}`)).json();
+    if (keyframes[keyframe].start !== null) return keyframes[keyframe].start;
+    await page.waitForTimeout(200);
+  }
+}
+
 async function compareBoth(page) {
   await page.locator(".differs:not([hidden])").waitFor();
   let [before, now] = [[0, 0], await places(page)];
@@ -69,8 +91,10 @@ await scene(async (page, id) => {
   const moved = await move(page, id);
   const beside = () => page.getByRole("link", { name: "See both side by side" }).click();
   await beside();
-  const both = await compareBoth(page);
+  // The way to the seat is another there, so that one of them has to wait.
+  await page.locator(".pair").waitFor();
+  const [both, steps] = await Promise.all([compareBoth(page), together(page, [id, moved.take], 1)]);
   const learned = await withBackend(page, id, "diffusion");
   await beside();
-  return { moved, both, learned, backends: await compareBoth(page) };
+  return { moved, both, learned, steps, backends: await compareBoth(page) };
 });

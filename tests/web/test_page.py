@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import time
+from bisect import bisect_right
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -177,6 +178,17 @@ def test_the_text_follows_the_film_and_leads_back_to_it(watched: dict[str, Any],
         assert moment["frame"] == keyframe["start"], "a sentence leads to where its moment begins"
         span = tells[moment["keyframe"]]
         assert words(moment["words"]) in words(story["text"][span["start"] : span["end"]])
+
+
+def test_words_that_are_told_and_not_acted_can_be_read(watched: dict[str, Any], story: dict[str, Any]) -> None:
+    text = story["text"]
+    assert [words(one["text"]) for one in watched["unseen"]] == [
+        words(text[one["start"] : one["end"]]) for one in story["thoughts"]
+    ]
+    assert watched["unseen"], "the theme has something that is only told"
+    for one in watched["unseen"]:
+        # Blanks at which a line breaks have no width.
+        assert one["box"] > 0.9 * one["letters"] > 0, one
 
 
 def test_how_one_sits_is_changed_beside_the_film_and_seen(
@@ -400,6 +412,7 @@ def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side
     assert [head.split(" · ")[0] for head in both["heads"]] == ["The story", "Take 1"]
     assert "What differs" in both["differs"]
     assert both["sideways"] <= 0
+    _in_step(told["steps"], [[one["start"] for one in story["keyframes"]] for story in (brief, take)])
 
     learned, backends = finished(client, told["learned"]), told["backends"]
     stories = (finished(client, brief["id"]), learned)
@@ -416,10 +429,27 @@ def test_a_home_is_brought_in_beside_the_script_and_both_films_play_side_by_side
         for name, share in motion["made_by"].items():
             assert f"Moved by {about(name)}; " in movers
             assert f"{100 * share:.1f} % of the film" in movers
+    assert "Take 2" in backends["differs"], "which is which stands over it"
+    assert "Moved by" in backends["differs"], "what differs is named"
+    assert "Seed" not in backends["differs"], "and what does not is not"
     reasons = {phase["fallback"] for one in learned["report"]["keyframes"] for phase in one["phases"]} - {None}
     told_reasons = backends["movers"][1].count(" %: ")
     assert told_reasons >= len(reasons) > 0, "each reason is told of the backend that stood in"
     client.delete("/v1/layouts/page-den").raise_for_status()
+
+
+def _in_step(seen: list[list[float]], starts: list[list[int]]) -> None:
+    """Both films are in the same moment whenever one looks, or the one ahead waits where its next one begins."""
+    assert len(seen) > 10
+    apart = 0
+    for frames in seen:
+        at = [bisect_right(begun, frame + 0.001) - 1 for begun, frame in zip(starts, frames, strict=True)]
+        assert abs(at[0] - at[1]) <= 1, frames
+        if at[0] != at[1]:
+            ahead = int(at[1] > at[0])
+            assert frames[ahead] == pytest.approx(starts[ahead][at[ahead]], abs=0.01), frames
+            apart += 1
+    assert apart, "they last differently long, so that one has to wait"
 
 
 def test_a_story_is_filmed_at_a_click_and_shows_the_body_moving(

@@ -54,6 +54,18 @@ const lit = (page) =>
     words: [...document.querySelectorAll(".told [aria-current]")].map((element) => element.textContent).join(""),
   }));
 
+/** Words that are told and not seen: how wide they stand there, and how wide their letters are, CSS pixels; what is clipped away stands nowhere. */
+const unseen = (page) =>
+  page.evaluate(() => {
+    const ink = new OffscreenCanvas(1, 1).getContext("2d");
+    return [...document.querySelectorAll(".told .unseen")].map((element) => {
+      const { font, clipPath } = getComputedStyle(element);
+      ink.font = font;
+      const boxes = [...element.getClientRects()];
+      return { text: element.textContent, box: clipPath === "none" ? boxes.reduce((sum, { width }) => sum + width, 0) : 0, letters: ink.measureText(element.textContent).width };
+    });
+  });
+
 /** A still moment: the joints, and a picture of the stage. */
 async function moment(page, keyframe) {
   await page.locator(".blocks button").nth(keyframe).click();
@@ -123,9 +135,12 @@ async function changed(page) {
   counts.push(await rows.count());
   const wrong = await complaints(page, ".editor");
   const sideways = await overhang(page);
-  const captions = await on("how").locator("option").evaluateAll((all) => all.map((option) => option.value));
+  const captions = await on("how").evaluate((field) => [...field.list.options].map((option) => option.value));
   const caption = captions.find((one) => /legs|knees|cross/.test(one) && one !== keyframes[at].caption);
-  await on("how").selectOption(caption);
+  // It is looked for by typing, and taken by Enter.
+  await on("how").focus();
+  await page.keyboard.insertText(caption);
+  await page.keyboard.press("Enter");
   const [begun] = [performance.now(), await page.getByRole("button", { name: "Play this" }).click()];
   await until(page, (seen) => seen.storyId !== links.self.split("/").at(-1) && seen.playing);
   const { storyId, keyframe } = await state(page);
@@ -175,5 +190,5 @@ await scene(async (page) => {
     clicked.push({ words: await page.locator(".told .moment").nth(sentence).textContent(), ...(await lit(page)) });
   }
   const story = (await state(page)).storyId;
-  return { grown, drawn, follow, colours, bounds, told, clicked, story, changed: await changed(page) };
+  return { grown, drawn, follow, colours, bounds, told, clicked, unseen: await unseen(page), story, changed: await changed(page) };
 });

@@ -18,6 +18,9 @@ import { keyframeAt } from "./timing";
 import { BEGUN_WORDS, sideOf } from "./words";
 
 const FPS = 30;
+/** What a film waits for: what is not made yet, or the film beside it. */
+const MADE = "The next moment is being made …";
+const HELD = "Waits for the other film …";
 /** From where each skill is seen best, radians from straight ahead: what is touched stands in front of the body. */
 const ASIDE: Readonly<Record<Skill, number>> = { touch: 2, loco: 0.85, sitdown: 0.7, standup: 0.7, getup: 0.7, liedown: 0.7 };
 
@@ -34,7 +37,7 @@ export class Film {
   readonly #holder = h("div", { class: "picture", tabindex: 0, role: "img", "aria-label": "The film. A, D, W and S turn the camera" });
   readonly #subtitle = h("p", { class: "subtitle", hidden: true });
   readonly #curtain = h("div", { class: "curtain" }, h("i", {}), h("i", {}));
-  readonly #wait = h("p", { class: "waiting", hidden: true }, "The next moment is being made …");
+  readonly #wait = h("p", { class: "waiting", hidden: true }, MADE);
   readonly #notice = h("div", { class: "notice", hidden: true });
   readonly #arch: HTMLElement;
   readonly #pose = emptyPose();
@@ -283,6 +286,17 @@ export class Film {
     return (start !== null && ready > start + 1) || (this.#over() && ready >= (this.#story?.motion.frames ?? 0));
   }
 
+  /** Seconds at which a keyframe begins; null while that is not known, Infinity where it never will be. */
+  beginOf(keyframe: number): number | null {
+    const start = this.#story?.keyframes[keyframe]?.start ?? null;
+    return start === null ? (this.#over() ? Infinity : null) : start / FPS;
+  }
+
+  /** Whether the curtain is up. */
+  get opened(): boolean {
+    return this.#opened;
+  }
+
   /** The first frame of a keyframe, or of the last one where there are fewer by now. */
   #startOf(keyframe: number): number | null {
     const all = this.#story?.keyframes ?? [];
@@ -366,6 +380,7 @@ export class Film {
 
   #showState(): void {
     this.controls.update(this.player);
+    this.#wait.textContent = this.player.held ? HELD : MADE;
     if (this.#opened || this.#arch.classList.contains("closed")) this.#wait.hidden = this.player.state !== "waiting" || !this.#opened;
   }
 

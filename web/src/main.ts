@@ -7,6 +7,7 @@ import { fill, framed, h } from "./dom";
 import { Gallery } from "./gallery";
 import { loginForm } from "./login";
 import type { Point3 } from "./pose";
+import type { SideBySide } from "./side-by-side";
 import { StoryView } from "./story-view";
 import { ThemeForm } from "./theme-form";
 
@@ -14,6 +15,8 @@ const main = framed("main");
 let view: StoryView | null = null;
 /** Leaves the rooms, or two films beside each other, where they are shown. */
 let leave: (() => void) | null = null;
+/** Two films beside each other, where they are shown. */
+let both: SideBySide | null = null;
 /** Counts what was shown, so that what comes late is not shown over what was asked for since. */
 let turn = 0;
 
@@ -51,7 +54,7 @@ function clear(): void {
   view?.dispose();
   view = null;
   leave?.();
-  leave = null;
+  leave = both = null;
 }
 
 /** The library, or one of its rooms; its code is fetched when it is first asked for. */
@@ -71,12 +74,13 @@ async function showCaptions(asked: string): Promise<void> {
 }
 
 /** Two stories beside each other; their code is fetched when they are first asked for. */
-async function showBoth(ids: readonly string[], from: number | null): Promise<void> {
+async function showBoth(ids: readonly [string, string], from: number | null): Promise<void> {
   const mine = turn;
   fill(main);
   const { SideBySide } = await import("./side-by-side");
   if (mine !== turn) return;
   const pair = new SideBySide(ids, from);
+  both = pair;
   leave = () => pair.dispose();
   fill(main, pair.element);
 }
@@ -134,6 +138,8 @@ interface Seen {
   joints(): Point3[];
   pixels(): Point2[];
   camera: { mode: string; position: Point3 | null } | null;
+  /** Where two films are that play beside each other. */
+  both: { frame: number; playing: boolean }[];
 }
 
 function seen(): Seen {
@@ -151,6 +157,7 @@ function seen(): Seen {
     joints: () => film?.joints() ?? [],
     pixels: () => film?.pixels() ?? [],
     camera: film?.camera ?? null,
+    both: (both?.films ?? []).map(({ player }) => ({ frame: player.time * 30, playing: player.state === "playing" })),
   };
 }
 

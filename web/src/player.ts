@@ -10,6 +10,8 @@ export class Player {
   #state: PlayState = "paused";
   #readyTime = 0;
   #complete = false;
+  #bar = Infinity;
+  #seeks = 0;
   #listeners = new Set<() => void>();
 
   get state(): PlayState {
@@ -21,6 +23,26 @@ export class Player {
     return this.#state === "playing" || this.#state === "waiting";
   }
 
+  /** Waiting at a bar, though more is ready. */
+  get held(): boolean {
+    return this.#state === "waiting" && this.time < this.#readyTime;
+  }
+
+  /** How often it was sent to another place. */
+  get seeks(): number {
+    return this.#seeks;
+  }
+
+  /** Play no farther than to a time in seconds; who goes beyond waits there. */
+  bar(time: number): void {
+    this.#bar = time;
+    if (this.#state === "waiting" && this.time < this.#end) this.#set("playing");
+  }
+
+  get #end(): number {
+    return Math.min(this.#readyTime, this.#bar);
+  }
+
   /** Told when the state, the speed or the place was changed by other than time going by. */
   onChange(listener: () => void): void {
     this.#listeners.add(listener);
@@ -30,14 +52,17 @@ export class Player {
   feed(readyTime: number, complete: boolean): void {
     this.#readyTime = readyTime;
     this.#complete = complete;
-    if (this.#state === "waiting" && this.time < readyTime) this.#set("playing");
-    else if (this.#state === "waiting" && complete) this.#set("ended");
+    if (this.#state === "waiting" && this.time < this.#end) this.#set("playing");
+    else if (this.#state === "waiting" && complete && this.time >= readyTime) this.#set("ended");
     else if (this.#state === "ended" && !complete) this.#set("paused");
   }
 
   play(): void {
-    if (this.#state === "ended" || (this.#complete && this.time >= this.#readyTime)) this.time = 0;
-    this.#set(this.time < this.#readyTime ? "playing" : "waiting");
+    if (this.#state === "ended" || (this.#complete && this.time >= this.#readyTime)) {
+      this.time = 0;
+      this.#seeks++;
+    }
+    this.#set(this.time < this.#end ? "playing" : "waiting");
   }
 
   pause(): void {
@@ -51,6 +76,7 @@ export class Player {
 
   /** Go to a time in seconds; beyond what is ready, to its end. */
   seek(time: number): void {
+    this.#seeks++;
     this.time = Math.min(Math.max(time, 0), this.#readyTime);
     const atEnd = this.#complete && this.time >= this.#readyTime;
     if (this.running || this.#state === "ended") this.#set(atEnd ? "ended" : this.running ? "playing" : "paused");
@@ -65,10 +91,12 @@ export class Player {
   /** Let seconds go by. */
   advance(seconds: number): void {
     if (this.#state !== "playing") return;
+    const before = this.time;
     this.time += seconds * this.speed;
-    if (this.time < this.#readyTime) return;
-    this.time = this.#readyTime;
-    this.#set(this.#complete ? "ended" : "waiting");
+    if (this.time < this.#end) return;
+    // Who was sent beyond the bar stays there.
+    this.time = Math.max(this.#end, Math.min(before, this.#readyTime));
+    this.#set(this.#complete && this.time >= this.#readyTime ? "ended" : "waiting");
   }
 
   #set(state: PlayState): void {

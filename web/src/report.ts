@@ -1,11 +1,11 @@
 /** How well the story was acted, in plain words, and honest labels of what made it. */
 
-import type { Beat, Keyframe, KeyframeFigures, Report, Story } from "./api";
+import type { Beat, Keyframe, KeyframeFigures, Report, Skill, Story } from "./api";
 import { fill, h } from "./dom";
 import { placeWords } from "./furniture-words";
 import { moverList, type Phase } from "./movers";
 import { badge, isOtherwise, lacking, legend, outcomeOf } from "./outcomes";
-import { beatsWords, capital, centimetres, percent, SKILL_WORDS } from "./words";
+import { beatsWords, capital, centimetres, count, isAsked, percent, SKILL_WORDS } from "./words";
 
 /** From these on a moment is worth a remark, metres. */
 const WIDE_CONTACT = 0.03;
@@ -51,7 +51,7 @@ export function limitList({ limits = [] }: Pick<Report, "limits">): HTMLElement 
 export function showReport(section: HTMLElement, story: Story, seek: (keyframe: number) => void): boolean {
   const { report } = story;
   if (!report) return false;
-  const remarks = report.keyframes.flatMap((figure) => remark(figure, story.keyframes[figure.keyframe], seek));
+  const remarks = [...report.keyframes.flatMap((figure) => remark(figure, story.keyframes[figure.keyframe], seek)), ...story.beats.flatMap((beat, index) => stoodFor(beat, index, story, seek))];
   fill(
     section,
     h("h2", {}, "How well it went"),
@@ -60,7 +60,8 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
     legend(story.beats, report.keyframes),
     figureList(report),
     limitList(report),
-    remarks.length ? h("ul", { class: "remarks" }, ...remarks) : h("p", { class: "fine" }, "Nothing stands out: every moment came out as it was meant to."),
+    remarks.length ? h("ul", { class: "remarks" }, ...remarks) : null,
+    standing(story, remarks.length === 0),
     h("ul", { class: "labels" }, h("li", {}, plannerWords(report.planner)), h("li", {}, encoderWords(report.encoder))),
     h("h3", {}, "What moved the body"),
     moverList(phasesOf(report), report.moved_by),
@@ -70,6 +71,38 @@ export function showReport(section: HTMLElement, story: Story, seek: (keyframe: 
 
 /** All that the film is made of, piece after piece; stories made by earlier versions have none. */
 export const phasesOf = (report: Report): Phase[] => report.keyframes.flatMap(({ phases }) => phases ?? []);
+
+/** What stands out besides single moments, in a sentence; null where nothing does. */
+export function standsOut(beats: readonly Beat[], limits: readonly { readonly kept: boolean }[] = []): string | null {
+  const missing = beats.filter((beat) => isAsked(beat) && outcomeOf(beat) === "missing").length;
+  const partly = beats.filter((beat) => beat.acted && lacking(beat)).length;
+  const missed = limits.filter(({ kept }) => !kept).length;
+  const told = [
+    ...(missing ? [`${count(missing, "beat")} of your theme ${missing === 1 ? "is" : "are"} not acted`] : []),
+    ...(partly ? [`something of ${count(partly, "beat")} is not shown`] : []),
+    ...(missed ? [`${count(missed, "limit")} of how well it moves ${missed === 1 ? "is" : "are"} missed`] : []),
+  ];
+  return told.length ? `What stands out, as told above: ${told.join("; ")}.` : null;
+}
+
+/** Whether nothing at all stands out is said only where it is so. */
+function standing({ beats, report }: Story, quiet: boolean): HTMLElement | null {
+  const words = standsOut(beats, report?.limits) ?? (quiet ? "Nothing stands out: every moment came out as it was meant to." : null);
+  return words === null ? null : h("p", { class: "fine" }, words);
+}
+
+/** Where something is seen that only stands for a beat. */
+function stoodFor(beat: Beat, index: number, { keyframes }: Story, seek: (keyframe: number) => void): HTMLElement[] {
+  if (outcomeOf(beat) !== "stands") return [];
+  const shown = keyframes.filter((keyframe) => keyframe.beat === index || keyframe.also.includes(index));
+  const links = shown.flatMap((keyframe, place) => [place ? ", " : "", momentLink(keyframe.index, keyframe.skill, keyframe, seek)]);
+  return [h("li", {}, badge("stands"), " ", ...links, ` – ${links.length ? "" : "something "}only stands for “${beat.text}”.`)];
+}
+
+function momentLink(index: number, skill: Skill, keyframe: Keyframe | undefined, seek: (keyframe: number) => void): HTMLElement {
+  const place = keyframe ? ` at the ${placeWords(keyframe)}` : "";
+  return h("button", { type: "button", class: "link", onclick: () => seek(index) }, `Moment ${index + 1}, ${SKILL_WORDS[skill]}${place}`);
+}
 
 function became(beat: Beat): HTMLElement {
   const lacks = lacking(beat);
@@ -84,8 +117,6 @@ function remark(figure: KeyframeFigures, keyframe: Keyframe | undefined, seek: (
   if (figure.performed_as) said.push(`done as “${figure.performed_as}”, which the body knows`);
   said.push(...(figure.notes ?? []));
   if (!said.length) return [];
-  const place = keyframe ? ` at the ${placeWords(keyframe)}` : "";
-  const name = `Moment ${figure.keyframe + 1}, ${SKILL_WORDS[figure.skill]}${place}`;
-  const go = h("button", { type: "button", class: "link", onclick: () => seek(figure.keyframe) }, capital(name));
+  const go = momentLink(figure.keyframe, figure.skill, keyframe, seek);
   return [h("li", {}, ...(isOtherwise(figure) ? [badge("otherwise"), " "] : []), go, ` – ${said.join(", ")}.`)];
 }

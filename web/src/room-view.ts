@@ -146,7 +146,7 @@ function doable(room: Room, piece: Piece): HTMLElement[] {
   return AFFORDANCES.flatMap((affordance) => {
     const spots = room.spots.filter((spot) => spot.object_id === piece.id && spot.affordance === affordance);
     if (!spots.length) return [];
-    return [spots.some((spot) => spot.usable) ? h("span", { class: `deed ${affordance}` }, affordance) : h("span", { class: "deed out" }, h("s", {}, affordance), h("span", { class: "unseen" }, " (nobody gets there)"))];
+    return [spots.some((spot) => spot.usable) ? h("span", { class: `deed ${affordance}` }, affordance) : h("span", { class: "deed out" }, h("s", {}, affordance), h("span", { class: "visually-hidden" }, " (nobody gets there)"))];
   });
 }
 

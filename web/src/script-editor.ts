@@ -44,6 +44,7 @@ export class ScriptEditor {
   readonly #mover = h("p", { id: "take-mover", class: "fine" });
   readonly #rooms: HTMLInputElement;
   readonly #known = h("datalist", { id: "take-rooms" });
+  readonly #offers = new Map<Skill, HTMLElement>();
   #now: Wanted;
   #key = newKey();
 
@@ -71,7 +72,7 @@ export class ScriptEditor {
       h("div", { class: "editor-foot" }, this.#problem, h("div", { class: "row" }, this.#play, this.#undo)),
     );
     this.element.addEventListener("keydown", (event) => {
-      if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || event.target === this.#seed || event.target === this.#rooms) return;
+      if (event.key !== "z" || !(event.ctrlKey || event.metaKey) || event.shiftKey || event.target === this.#seed || event.target === this.#rooms || isBeingTyped(event.target)) return;
       event.preventDefault();
       this.#back();
     });
@@ -157,7 +158,7 @@ export class ScriptEditor {
         choose("skill", "what is done", SKILLS.map((skill) => [skill, capital(SKILL_WORDS[skill])] as const), draft.skill, (value) => this.#reskill(at, value as Skill)),
         choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
         choose("emotion", "in which mood", EMOTIONS.map((emotion) => [emotion, emotion] as const), draft.emotion, (emotion) => this.#do(changed(script, at, { emotion }), `${name}: ${emotion}`)),
-        choose("caption", "how", this.#words.captions(draft.skill).map((caption) => [caption, caption] as const), draft.caption, (caption) => this.#do(changed(script, at, { caption }), `${name}: ${caption}`)),
+        captionField(`${name}: how`, at, draft, this.#captionsOf(draft.skill).id, (caption) => this.#do(changed(script, at, { caption }), `${name}: ${caption}`)),
         h(
           "div",
           { class: "draft-moves" },
@@ -169,6 +170,14 @@ export class ScriptEditor {
       ),
       h("p", { class: "wrong", hidden: true }),
     );
+  }
+
+  /** The captions of a skill to choose from, made once and looked through by typing. */
+  #captionsOf(skill: Skill): HTMLElement {
+    const made = this.#offers.get(skill) ?? h("datalist", { id: `captions-${skill}` }, ...this.#words.captions(skill).map((caption) => h("option", { value: caption })));
+    if (!this.#offers.has(skill)) this.element.append(made);
+    this.#offers.set(skill, made);
+    return made;
   }
 
   /** What its emotion means, where it is in words of its own. */
@@ -262,6 +271,41 @@ export class ScriptEditor {
     announce(error.detail);
   }
 }
+
+/**
+ * A caption, looked for by typing some of it: what is listed holds what is typed, and all of them are listed before that.
+ * It is taken on Enter, on leaving, or when it is picked from the list.
+ */
+function captionField(label: string, at: number, { caption }: Draft, list: string, act: (caption: string) => void): HTMLInputElement {
+  const take = (): void => {
+    if (field.value && field.value !== caption) act(field.value);
+  };
+  // A list beside a field holds only what is like its words: an empty one shows all, what it had stands behind.
+  const clear = (): void => {
+    if (field.value !== caption) return;
+    field.placeholder = caption;
+    field.value = "";
+  };
+  const field: HTMLInputElement = h("input", {
+    "data-at": `${at} caption`, "data-field": "caption", "data-had": caption, "aria-label": label, list, value: caption, title: caption, autocomplete: "off", spellcheck: false, maxlength: 200,
+    onfocus: () => field.select(),
+    onmousedown: clear,
+    onkeydown: (event: KeyboardEvent) => {
+      if (event.key === "ArrowDown") clear();
+      if (event.key === "Escape") field.value = caption;
+    },
+    onblur: () => (field.value ||= caption),
+    onchange: take,
+    // Picked from the list: other than letters that are typed.
+    oninput: (event: Event) => {
+      if (!(event instanceof InputEvent) || event.inputType === "insertReplacementText") take();
+    },
+  });
+  return field;
+}
+
+/** Whether letters of a caption are being typed, which the browser takes back by itself. */
+const isBeingTyped = (target: EventTarget | null): boolean => target instanceof HTMLInputElement && target.dataset["had"] !== undefined && target.value !== target.dataset["had"];
 
 /** What a take is made with, and its name beside it. */
 function staged(name: string, control: HTMLElement, ...more: HTMLElement[]): HTMLElement {

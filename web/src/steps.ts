@@ -9,7 +9,7 @@ export class Steps {
   readonly element = h("div", { class: "steps", hidden: true });
   readonly #words = h("p", { class: "steps-words" });
   readonly #line = h("ol", { class: "steps-line", "aria-hidden": "true" });
-  readonly #bar = h("progress", { class: "unseen", max: 1, value: 0, "aria-label": "How far the story is" });
+  readonly #bar = h("progress", { class: "visually-hidden", max: 1, value: 0, "aria-label": "How far the story is" });
   readonly #cancel: HTMLButtonElement;
   #broken = false;
   /** The stage that is shown, of STAGES. */

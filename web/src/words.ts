@@ -79,9 +79,12 @@ export function takeWords({ take, derived_from }: Pick<Story, "take" | "derived_
   return take ? `Take ${take}` : "A take";
 }
 
+/** Whether a beat asks for something to be seen: not what is to be left undone, nor what is told and nobody does. */
+export const isAsked = ({ kind, who }: Beat): boolean => kind !== "undone" && (kind !== "other" || who !== "");
+
 /** "6 of 7 beats of your theme are acted."; of what is asked for: not of what is to be left undone, nor of what is told and nobody does. */
 export function beatsWords(beats: readonly Beat[]): string {
-  const asked = beats.filter((beat) => beat.kind !== "undone" && (beat.kind !== "other" || beat.who));
+  const asked = beats.filter(isAsked);
   const stoodFor = asked.filter((beat) => beat.stood_for).length;
   const more = stoodFor ? `, something stands for ${stoodFor} more` : "";
   return `${asked.filter((beat) => beat.acted).length} of ${count(asked.length, "beat")} of your theme ${asked.length === 1 ? "is" : "are"} acted${more}.`;

@@ -3,6 +3,7 @@
 import { beforeAll, describe, expect, test } from "vitest";
 import type { Beat, KeyframeFigures, Story } from "../src/api";
 import { badge, lacking, legend, marks, outcomeOf } from "../src/outcomes";
+import { standsOut } from "../src/report";
 import { beatsWords } from "../src/words";
 
 /** As much of a document as making elements asks for. */
@@ -79,5 +80,12 @@ describe("outcomes", () => {
     const story = { keyframes, beats: [ACTED, STOOD], report: { keyframes: [figures({}), figures({ keyframe: 1 }), figures({ keyframe: 2, performed_as: "walk slowly" })] } };
     expect([...marks(story as unknown as Story)]).toEqual([[1, "stands"], [2, "otherwise"]]);
     expect(marks({ ...story, report: null } as unknown as Story).size).toBe(1);
+  });
+
+  test("that nothing stands out is said only where all is acted and every limit is kept", () => {
+    const kept = [{ kept: true }];
+    expect(standsOut([ACTED, UNDONE, TOLD], kept)).toBeNull();
+    expect(standsOut([ACTED, MISSING], kept)).toBe("What stands out, as told above: 1 beat of your theme is not acted.");
+    expect(standsOut([beat({ unshown: ["for her ladyship"] })], [...kept, { kept: false }])).toBe("What stands out, as told above: something of 1 beat is not shown; 1 limit of how well it moves is missed.");
   });
 });

@@ -84,6 +84,23 @@ def test_a_caption_that_is_read_as_another_is_said_before_anything_is_made(tmp_p
     assert second.startswith("moment 2, caption: 'moonwalk backwards' is read word by word")
 
 
+def test_words_of_a_caption_that_nothing_shows_are_named_and_those_that_are_seen_are_not() -> None:
+    seat = {"skill": Skill.SITDOWN, "furniture": "sofa", "emotion": "neutral"}
+    paper, book = unknown_captions(
+        [Keyframe(caption=f"legs crossed, reading a {what}", **seat) for what in ("newspaper", "book")]
+    )
+    assert "is read word by word, and nothing of 'newspaper' is seen; perhaps" in paper
+    assert "is read word by word; perhaps" in book
+
+
+def test_what_is_done_instead_is_not_suggested_as_well() -> None:
+    sit = Keyframe(skill=Skill.SITDOWN, caption="siting stil", furniture="sofa", emotion="neutral")
+    (line,) = unknown_captions([sit])
+    done = line.partition("does '")[2].partition("' instead")[0]
+    assert done
+    assert line.count(repr(done)) == 1, line
+
+
 def test_what_is_suggested_means_what_was_asked_for_or_is_what_the_mood_does() -> None:
     walk = {"skill": Skill.LOCO, "furniture": "floor"}
     drunk, plain = unknown_captions(
@@ -92,8 +109,8 @@ def test_what_is_suggested_means_what_was_asked_for_or_is_what_the_mood_does() -
             for caption, mood in (("xyzzy", "drunk"), ("xyzzy", "neutral"))
         ]
     )
-    assert drunk.endswith("; perhaps 'walking drunkenly'")
-    assert "perhaps" not in plain
+    assert drunk.endswith("which does 'walking drunkenly' instead")
+    assert "perhaps" not in plain + drunk, "what is done is not suggested"
 
 
 @pytest.mark.parametrize("skill", Skill)

@@ -79,6 +79,16 @@ def test_a_substitution_is_said() -> None:
     assert "dining chair → stool" in found.explain()[0]
 
 
+def test_a_piece_of_the_kind_that_is_called_otherwise_is_said() -> None:
+    pieces = {"chaise_longue_sofa": "sofa → chaise longue (one of its kind)", "multi_seat_sofa": ""}
+    for category, said in pieces.items():
+        placed = Placed("a", category, (2.0, 0.0, 2.0), (1.8, 0.8, 0.85))
+        room = Layout("mine", "bedroom", ((0.0, 0.0), (0.0, 4.0), (4.0, 4.0), (4.0, 0.0)), objects=(placed,))
+        (line,) = furnish(script(("sitdown", "sofa", "bedroom")), index(), given=[room]).explain()
+        assert ("→" in line) == bool(said)
+        assert said in line
+
+
 def test_a_users_room_without_the_very_thing_lends_another_and_says_so() -> None:
     room = Layout(
         "mine",

@@ -8,7 +8,7 @@ from for_each import for_each
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
 from motion_backend.procedural.caption_coverage import understands
-from planner_service.output.story_export import report_to_dict, story_to_markdown
+from planner_service.output.story_export import report_to_dict, story_to_markdown, told_notes
 from planner_service.pipeline import Pipeline, StoryRequest
 from planner_service.scripts.caption_fallbacks import hashed_words, performed_as
 from planner_service.scripts.captions import Vocabulary, captions, synonyms
@@ -71,10 +71,14 @@ def test_the_report_says_what_stood_in_and_the_story_keeps_its_words(monkeypatch
     lines = (
         Keyframe(skill=Skill.LOCO, emotion="sad", caption=words, furniture="chair"),
         Keyframe(skill=Skill.SITDOWN, emotion="sad", caption="sitting with head bowed", furniture="chair"),
+        Keyframe(skill=Skill.SITDOWN, emotion="sad", caption="legs crossed, reading a newspaper", furniture="chair"),
     )
     story = Pipeline().make(StoryRequest("", keyframes=lines))
     assert story.planned.script.keyframes[0].caption == words
-    walk, sitting = report_to_dict(story)["keyframes"]
+    walk, sitting, *_, reading = report_to_dict(story)["keyframes"]
+    lost = "nothing is seen of “newspaper” in “legs crossed, reading a newspaper”"
+    assert reading["notes"] == [lost]
+    assert any(line.endswith(lost) for line in told_notes(story))
     assert walk["performed_as"] == story.actions[0].caption
     assert walk["performed_as"] in captions()["loco"]
     assert sitting["performed_as"] is None
@@ -85,7 +89,7 @@ def test_the_report_says_what_stood_in_and_the_story_keeps_its_words(monkeypatch
         "backend": "procedural",
         "fallback": None,
     }
-    assert sitting["phases"][-1]["stop"] == len(story.motion)
+    assert reading["phases"][-1]["stop"] == len(story.motion)
     assert walk["notes"] == sitting["notes"] == []
 
 
