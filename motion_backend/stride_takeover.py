@@ -86,6 +86,7 @@ def stride_of(history: History, skeleton: Skeleton, style: Walk, rest: Array) ->
         arms_onward=None,
         shift=np.zeros((0, 3)),
         rest=np.concatenate([place[None], rest]),
+        borrowed=True,
     )
 
 

@@ -30,6 +30,8 @@ BEYOND = 24
 """So many frames are known of how a walk would have gone on that is cut off (its weight is shifted for them)."""
 ABOUT = 3
 """Frames about such a frame in which feet are slow."""
+LANDS = 1.0
+"""A foot that comes down in one of the next two frames counts as going so far (metres): rather any other frame."""
 NEAR = 0.2
 """Who has gone so far along a way is no farther than this from there (metres)."""
 REJOINS = 0.8
@@ -125,7 +127,7 @@ def _stepping(
 
 def _as_feet_change(steps: Steps, pelvis: Array, frame: int) -> int:
     """The frame within half a step of that one about which feet are slowest and change their pace least, while the body
-    goes on: nobody changes his walk in mid-swing, as a foot comes down, nor over a foot."""
+    goes on: nobody changes his walk in mid-swing, as a foot comes down on a leg that then gives, nor over a foot."""
     from scipy.ndimage import maximum_filter1d
 
     sooner, later = junction_table().feet_change_steps
@@ -138,12 +140,18 @@ def _as_feet_change(steps: Steps, pelvis: Array, frame: int) -> int:
     rough = rotations.length(gone) + rotations.length(np.diff(gone, axis=0, prepend=gone[:1]))
     rough = maximum_filter1d(rough[..., 0].max(axis=1), ABOUT, mode="nearest")[first:last]
     speed = rotations.length(np.diff(pelvis[:, [0, 2]], axis=0))[first:last, 0]
-    return int(first + np.argmin(np.where(speed >= np.median(speed), rough, np.inf)))
+    lands = np.append((np.diff(steps.planted, axis=0) > 0).any(axis=1), (False, False))
+    landing = (lands[:-1] | lands[1:])[first:last]
+    return int(first + np.argmin(np.where(speed >= np.median(speed), rough + LANDS * landing, np.inf)))
 
 
 def _taken_up(start: Pose, pose: Pose, stride: Stride, fps: int) -> Pose:
     """A walk whose first frame is the pose it starts from, and is over already."""
     settled, row = settle_from(start, pose, fps), carriage().way
+    if stride.borrowed:
+        # A leg that is held high as well stays straight until its foot lifts, and pops then.
+        pelvis = np.stack([settled.pelvis[:, 0], pose.pelvis[:, 1], settled.pelvis[:, 2]], axis=1)
+        settled = replace(settled, pelvis=pelvis)
     apart = start.arms - pose.arms[0]
     if float(np.linalg.norm(apart, axis=-1).max()) < row.same_arms:
         # Arms go on swinging: what little they are off fades out.

@@ -82,6 +82,9 @@ class Stride:
     """(K, 3) how far the pelvis was shifted in the last frames for the balance of the body (balance_pass.py)."""
     rest: Array
     """(N, 2) [x, z] the way it was going to go on by: its first point is `place`, its last the next walk's goal."""
+    borrowed: bool = False
+    """Whether another backend moved the body so far: what it is off in height dies away in the motion that is made
+    (`stride_takeover.joined`), and not in the handles before that as well."""
 
     def to_lists(self) -> dict[str, Any]:
         """Plain lists and numbers for a BodyState's memory."""
