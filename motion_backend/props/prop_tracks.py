@@ -144,7 +144,7 @@ def _tracks(hands: Hands, held: Held, there: NDArray[np.bool_]) -> Iterator[Prop
 
 def prop_points(tracks: Sequence[PropTrack], frame: int) -> Array:
     """The vertices of all that is in the hands at a frame, in the world. (N, 3)."""
-    points = [np.zeros((0, 3))]
+    points: list[NDArray[np.floating]] = [np.zeros((0, 3))]
     for track in tracks:
         if track.start <= frame < track.stop:
             now = frame - track.start

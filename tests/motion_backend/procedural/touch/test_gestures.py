@@ -204,7 +204,7 @@ def test_who_kneels_is_on_both_knees_on_the_heels_and_up_again() -> None:
     )
     knees = joints[:, [INDEX["left_knee"], INDEX["right_knee"]], 1]
     # One knee after the other goes down, and comes up.
-    down = knees < 0.12
+    down = np.asarray(knees < 0.12)
     assert down.all(axis=1).mean() > 0.3
     assert (down.sum(axis=1) == 1).any()
     low = joints[:, 0, 1] < 0.4
