@@ -42,7 +42,9 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
     seated = before.resting is None and bool(done) and done[-1].skill in _POSTURES
     if seated and deed.named and deed.skill is done[-1].skill is Skill.LIEDOWN and read.clause.verb in _FALLS:
         return False  # "falls face down on the bed": on it all the same
-    if seated and (is_gainsaid(read.clause, new) or read.clause.verb in EXPRESSIONS or _FACE.search(read.text)):
+    there = deed.is_gesture and deed.named and deed.skill is done[-1].skill if done else False  # "laughs on the sofa"
+    faces = read.clause.verb in EXPRESSIONS or _FACE.search(read.text) is not None
+    if seated and not there and (is_gainsaid(read.clause, new) or faces):
         return True  # "climbs on a chair" is no sitting on it; nobody sits down for a sigh
     resting = before.resting
     rises = resting is not None and bool(done) and _is_left(resting, done[-1], new)

@@ -118,6 +118,12 @@ export class ScriptEditor {
   #show(focus?: string): void {
     const held = focus ?? (document.activeElement instanceof HTMLElement && this.#list.contains(document.activeElement) ? document.activeElement.dataset["at"] : undefined);
     fill(this.#list, ...this.#now.script.map((draft, at) => this.#row(draft, at)));
+    this.#state();
+    if (held) this.#at(held)?.focus();
+  }
+
+  /** What stands below the rows, and which buttons do something. */
+  #state(): void {
     this.#seed.value = this.#now.seed;
     this.#backend.value = this.#now.backend;
     const { about = "" } = this.#words.backends.find((one) => one.backend === this.#backend.value) ?? {};
@@ -128,7 +134,23 @@ export class ScriptEditor {
     this.#play.disabled = untouched;
     this.#problem.hidden = true;
     this.#key = newKey();
-    if (held) this.#at(held)?.focus();
+  }
+
+  /** Another caption: the rows stay, since whoever leaves the field is about to use another control. */
+  #recaption(at: number, caption: string): void {
+    const script = changed(this.#now.script, at, { caption });
+    if (firstChange(script, this.#now.script) === null) return;
+    this.#past.push(this.#now);
+    this.#now = { ...this.#now, script };
+    const draft = script[at];
+    if (draft) this.#list.children[at]?.classList.toggle("other", this.#isOther(draft));
+    this.#state();
+    announce(`Moment ${at + 1}: ${caption}`);
+  }
+
+  /** Whether a moment is not as it was. */
+  #isOther(draft: Draft): boolean {
+    return firstChange([draft], this.#before.script.filter(({ index }) => index === draft.index)) !== null;
   }
 
   /** A control by its place and name, "3 caption". */
@@ -140,7 +162,6 @@ export class ScriptEditor {
   #row(draft: Draft, at: number): HTMLElement {
     const { script } = this.#now;
     const name = `Moment ${at + 1}`;
-    const other = firstChange([draft], this.#before.script.filter(({ index }) => index === draft.index)) !== null;
     const choose = (field: string, words: string, options: readonly (readonly [string, string])[], value: string, act: (value: string) => void): HTMLElement => {
       const known = options.some(([one]) => one === value) ? options : [[value, value] as const, ...options];
       const select: HTMLSelectElement = h("select", { "data-at": `${at} ${field}`, "data-field": field, "aria-label": `${name}: ${words}`, onchange: () => act(select.value) }, ...known.map(([one, told]) => h("option", { value: one, selected: one === value }, told)));
@@ -150,22 +171,22 @@ export class ScriptEditor {
       h("button", { type: "button", class: "quiet round", "data-at": `${at} ${field}`, "aria-label": `${name}: ${words}`, title: capital(words), disabled, onclick: act }, icon(picture));
     return h(
       "li",
-      { class: other ? "draft other" : "draft", "data-emotion": this.#mood(draft) },
+      { class: this.#isOther(draft) ? "draft other" : "draft", "data-emotion": this.#mood(draft) },
       h("span", { class: "cue-number" }, String(at + 1)),
       h(
         "div",
         { class: "draft-fields" },
         choose("skill", "what is done", SKILLS.map((skill) => [skill, capital(SKILL_WORDS[skill])] as const), draft.skill, (value) => this.#reskill(at, value as Skill)),
-        choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
-        choose("emotion", "in which mood", EMOTIONS.map((emotion) => [emotion, emotion] as const), draft.emotion, (emotion) => this.#do(changed(script, at, { emotion }), `${name}: ${emotion}`)),
-        captionField(`${name}: how`, at, draft, this.#captionsOf(draft.skill).id, (caption) => this.#do(changed(script, at, { caption }), `${name}: ${caption}`)),
+        choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(this.#now.script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
+        choose("emotion", "in which mood", EMOTIONS.map((emotion) => [emotion, emotion] as const), draft.emotion, (emotion) => this.#do(changed(this.#now.script, at, { emotion }), `${name}: ${emotion}`)),
+        captionField(`${name}: how`, at, draft, this.#captionsOf(draft.skill).id, (caption) => this.#recaption(at, caption)),
         h(
           "div",
           { class: "draft-moves" },
-          button("up", "earlier", "up", at === 0, () => this.#do(moved(script, at, -1), `${name} is now moment ${at}`, `${at - 1} up`)),
-          button("down", "later", "downward", at === script.length - 1, () => this.#do(moved(script, at, 1), `${name} is now moment ${at + 2}`, `${at + 1} down`)),
-          button("add", "put another behind it", "plus", false, () => this.#do(added(script, at, this.#fresh(draft)), `Moment ${at + 2} is new`, `${at + 1} skill`)),
-          button("drop", "leave it out", "trash", script.length === 1, () => this.#do(dropped(script, at), `${name} is left out`, `${Math.min(at, script.length - 2)} drop`)),
+          button("up", "earlier", "up", at === 0, () => this.#do(moved(this.#now.script, at, -1), `${name} is now moment ${at}`, `${at - 1} up`)),
+          button("down", "later", "downward", at === script.length - 1, () => this.#do(moved(this.#now.script, at, 1), `${name} is now moment ${at + 2}`, `${at + 1} down`)),
+          button("add", "put another behind it", "plus", false, () => this.#do(added(this.#now.script, at, this.#fresh(draft)), `Moment ${at + 2} is new`, `${at + 1} skill`)),
+          button("drop", "leave it out", "trash", script.length === 1, () => this.#do(dropped(this.#now.script, at), `${name} is left out`, `${Math.min(at, script.length - 2)} drop`)),
         ),
       ),
       h("p", { class: "wrong", hidden: true }),
@@ -276,9 +297,12 @@ export class ScriptEditor {
  * A caption, looked for by typing some of it: what is listed holds what is typed, and all of them are listed before that.
  * It is taken on Enter, on leaving, or when it is picked from the list.
  */
-function captionField(label: string, at: number, { caption }: Draft, list: string, act: (caption: string) => void): HTMLInputElement {
+function captionField(label: string, at: number, draft: Draft, list: string, act: (caption: string) => void): HTMLInputElement {
+  let { caption } = draft;
   const take = (): void => {
-    if (field.value && field.value !== caption) act(field.value);
+    if (!field.value || field.value === caption) return;
+    caption = field.dataset["had"] = field.title = field.value;
+    act(caption);
   };
   // A list beside a field holds only what is like its words: an empty one shows all, what it had stands behind.
   const clear = (): void => {
