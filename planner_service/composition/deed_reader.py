@@ -226,15 +226,11 @@ class DeedReader:
                 return told  # nothing else is played for what would be shown by its opposite
         if likely is None or (told is not None and (told.row.why or told.is_gesture)):
             return told
-        if told is not None and told.row.captions and opening_of(told.skill, clause.text):
-            return told  # every home has doors and windows
-        if told is not None and told.skill is Skill.LOCO and comes_in(clause.text):
+        if told is not None and _is_plain(told, clause):
             return told
         skill, best = likely.best
         most = likely.captions[skill, best]
         known = likely.of(told.skill, shown_by(told, Emotion.NEUTRAL)) if told is not None else 0.0
-        if told is not None and told.named and told.skill in RISINGS:
-            return told  # "gets up from his armchair", whatever else is told of it
         if likely.shown < UNSHOWABLE:
             return None
         if told is not None and told.row.captions and likely.shown < SHOWN:
@@ -244,13 +240,8 @@ class DeedReader:
             return None
         if told is not None and most - known < (SURER_OF_THE_SAME if skill is told.skill else SURER):
             return told
-        takes = told is not None and told.skill is Skill.TOUCH and clause.verb in theme_words()["taking_verbs"]
-        if takes and skill is not Skill.TOUCH and told is not None and told.row.captions:
-            return told  # nobody writes because a letter is taken
-        if told is not None and (_says_so(told, clause) or _falls_into_bed(told, clause)):
+        if told is not None and _is_surer(told, likely, clause):
             return told
-        if told is not None and most < MOUTHED and _only_seems(likely.best, clause):
-            return told  # who crumples a letter does not eat it
         if most < LIKELY:
             return told if told is not None and known > UNLIKELY else None
         return deed_of(clause, about, learned_row(clause, likely)) or told
@@ -402,6 +393,23 @@ def _idle(skill: Skill, some: Sequence[str], clause: Clause) -> Sequence[str]:
     """Those of some captions in which hands do nothing with a thing that is not told of; all where there are none."""
     idle = [one for one in some if not any(part in one for part in IN_HANDS) or shows(skill, one, clause, own=True)]
     return idle or some
+
+
+def _is_plain(deed: Deed, clause: Clause) -> bool:
+    """Whether the table has a deed for words that leave no doubt, whatever was learned of them: a door or a window,
+    coming in, and getting up from what is named."""
+    opens = bool(deed.row.captions) and opening_of(deed.skill, clause.text) is not None
+    comes = deed.skill is Skill.LOCO and comes_in(clause.text)
+    return opens or comes or (deed.named and deed.skill in RISINGS)
+
+
+def _is_surer(deed: Deed, likely: Likely, clause: Clause) -> bool:
+    """Whether the table's deed is taken though another is likelier: nobody writes because a letter is taken, nor eats
+    because it is crumpled."""
+    skill, _ = likely.best
+    takes = deed.skill is Skill.TOUCH and bool(deed.row.captions) and clause.verb in theme_words()["taking_verbs"]
+    mouthed = likely.captions[likely.best] < MOUTHED and _only_seems(likely.best, clause)
+    return (takes and skill is not Skill.TOUCH) or mouthed or _says_so(deed, clause) or _falls_into_bed(deed, clause)
 
 
 def _says_so(deed: Deed, clause: Clause) -> bool:

@@ -22,7 +22,7 @@ _MAT: Final = re.compile(r"\b(?:mat|rug|carpet|floor)\b")
 _RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 
 
-def spelt_out(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequence[ReadBeat]]:
+def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequence[ReadBeat]]:
     """A beat, and all of them, with what "it" is in its clause: who sits down at a desk and "opens it" opens the diary
     that was named before."""
     read = beats[index]

@@ -31,7 +31,7 @@ from planner_service.composition.deed_lexicon import (
 )
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader
-from planner_service.composition.earlier_deeds import done_before, spelt_out
+from planner_service.composition.earlier_deeds import done_before, with_its_noun
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import (
@@ -168,7 +168,7 @@ class KeyframeWriter:
         """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
         read = beats[index]
         beat = read.beat
-        read, beats = spelt_out(index, beats)
+        read, beats = with_its_noun(index, beats)
         deed = self._deed(index, beats) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         nexts = beats[index + 1 :]
@@ -271,24 +271,9 @@ class KeyframeWriter:
         self._clause = read.clause
         if deed.row.mood and mood is Emotion.NEUTRAL:
             mood = Emotion(deed.row.mood)
-        if self.body.resting is not None and only_stands_for(self.body.resting, read, deed, self.reader):
-            if shows(self.body.resting.skill, self.body.resting.caption, read.clause):
-                self.body.show(index)
-            else:
-                self.why[index] = UNSHOWN  # nobody gets up for what would show no more
-            return
-        if deed.skill is Skill.TOUCH and self._is_on_body(index, read):
+        if self._needs_nothing(index, read, deed):
             return
         resting = self.body.resting
-        limbs = lemma_of(head_of(read.clause.subject)) in theme_words()["body"]
-        if limbs and self.keyframes and resting is None and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN):
-            self.body.show(index)  # "leans against the wall, arms crossed"
-            return
-        beside = is_beside(read) and self.keyframes and resting is None and self._tells_same(index)
-        if beside and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN) and not deed.named:
-            self.why[index] = BESIDE
-            self.deeds.pop(index, None)
-            return
         match deed.skill:
             case Skill.LOCO if resting is not None and read.text in _STANDS:
                 self._rise(index, deed, mood)
@@ -327,6 +312,27 @@ class KeyframeWriter:
             case _:
                 shown = deed.row.captions if deed.skill is deed.row.skill else deed.row.seated
                 self._rest(index, read, deed, mood, deed.skill, shown)
+
+    def _needs_nothing(self, index: int, read: ReadBeat, deed: Deed) -> bool:
+        """Whether no keyframe is written for a beat, since what the body does already shows it, or must not be left
+        for it."""
+        resting = self.body.resting
+        if resting is not None:
+            stands_in = only_stands_for(resting, read, deed, self.reader)
+            if stands_in and shows(resting.skill, resting.caption, read.clause):
+                self.body.show(index)
+            elif stands_in:
+                self.why[index] = UNSHOWN  # nobody gets up for what would show no more
+            return stands_in or (deed.skill is Skill.TOUCH and self._is_on_body(index, read))
+        rests = bool(self.keyframes) and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)
+        if rests and lemma_of(head_of(read.clause.subject)) in theme_words()["body"]:
+            self.body.show(index)  # "leans against the wall, arms crossed"
+            return True
+        if rests and not deed.named and is_beside(read) and self._tells_same(index):
+            self.why[index] = BESIDE
+            self.deeds.pop(index, None)
+            return True
+        return deed.skill is Skill.TOUCH and self._is_on_body(index, read)
 
     def _tells_same(self, index: int) -> bool:
         """Whether the last keyframe is of the beat just before: something is done, on one's feet."""
