@@ -287,6 +287,8 @@ class DeedReader:
             return by_table
         if by_table and deed.skill is Skill.TOUCH and opening_of(deed.skill, clause.text):
             return True  # a hand at the door opens it, whatever else may show it
+        if deed.skill is Skill.LOCO and clause.lemmas == ("leave",):
+            return all(one.skill is Skill.LOCO for one in keyframes)  # seen walking, however they walk
         rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
         if by_table and rests and (RESTS.match(clause.text) or (deed.named and clause.verb in _RESTING)):
             return True  # whatever hands do there
@@ -409,7 +411,9 @@ def _is_surer(deed: Deed, likely: Likely, clause: Clause) -> bool:
     skill, _ = likely.best
     takes = deed.skill is Skill.TOUCH and bool(deed.row.captions) and clause.verb in theme_words()["taking_verbs"]
     mouthed = likely.captions[likely.best] < MOUTHED and _only_seems(likely.best, clause)
-    return (takes and skill is not Skill.TOUCH) or mouthed or _says_so(deed, clause) or _falls_into_bed(deed, clause)
+    sits = deed.named and deed.skill is Skill.SITDOWN and skill is Skill.LIEDOWN and clause.verb in ("drop", "sink")
+    seems = (takes and skill is not Skill.TOUCH) or mouthed or sits  # "drops on the couch"
+    return seems or _says_so(deed, clause) or _falls_into_bed(deed, clause)
 
 
 def _says_so(deed: Deed, clause: Clause) -> bool:

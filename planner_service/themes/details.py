@@ -9,6 +9,7 @@ from typing import Final
 from planner_service.themes.asides import MANNER
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, tokens_of
 
@@ -19,6 +20,7 @@ _SENSED: Final = frozenset(("sound", "sight", "thought", "smell", "news", "noise
 _LINKS: Final = frozenset((",", "and", "or", "then"))
 """Words after which another place is told, where the same is done."""
 _MARKS: Final = frozenset((",", ";"))
+_LEFT_OUT: Final = frozenset(("after", "before", "since", "until", "without"))
 _MOST_OF_TOOL: Final = 4
 _FEWEST: Final = 2
 """Words that a deed is told in at least."""
@@ -45,8 +47,13 @@ def _is_tool(text: str) -> bool:
 
 
 def _tells_when(text: str) -> bool:
-    """Whether words only tell when, how long or how often: "for an hour", "every morning"."""
+    """Whether words only tell when, how long or how often: "for an hour", "every morning", "after the funeral"; or what
+    there is none of, and what nobody sees: "without a word"."""
     known = grammar()
+    lead, *rest = [token.low for token in tokens_of(text)]
+    noun = [word for word in rest if word not in known.marks]
+    if lead in _LEFT_OUT and len(noun) == 1 and is_noun(noun[0]) and lemma_of(noun[0]) not in theme_words()["people"]:
+        return True
     small = known.prepositions | known.marks | known.numbers | known.times | known.adverbs | MANNER | {"so"}
     return all(token.low in small or lemma_of(token.low) in small for token in tokens_of(text))
 

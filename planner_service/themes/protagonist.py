@@ -348,7 +348,7 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     if main == "i" and low in _SUBJECTS - {"who"}:
         return low == pronoun
     if low in _FIRST_PERSON:
-        return main in _FIRST_PERSON or not main
+        return low == "we" or main in _FIRST_PERSON or not main  # "Dad plays with me, and | we | laugh"
     if low in _SUBJECTS:
         return low in ("they", "who") or (pronoun or pronouns_of(hero)) in ("", low)
     if head_of(subject).lower() in theme_words()["body"]:

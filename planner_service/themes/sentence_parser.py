@@ -457,8 +457,8 @@ def _describes(words: Sequence[str]) -> bool:
 def _starts_subject(words: Sequence[str], place: int) -> bool:
     """Whether a noun with its mark, or a name, begins there that no preposition goes before: "at last the news"."""
     before, word = words[place - 1], words[place]
-    if before.lower() in NAMING:
-        return False  # "a robot named | Bolt"
+    if before.lower() in NAMING | {"and"}:
+        return False  # "a robot named | Bolt", "Marta and | her husband"
     is_start = word.lower() in grammar().marks or (word[:1].isupper() and not before[:1].isupper())
     return is_start and before.lower() not in grammar().marks | grammar().prepositions
 

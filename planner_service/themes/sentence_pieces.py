@@ -19,7 +19,7 @@ from planner_service.themes.lexicon import (
 )
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
-from planner_service.themes.verb_finder import Token, is_adverb, names, plain, tokens_of, verb_place
+from planner_service.themes.verb_finder import Token, is_adverb, names, plain, tokens_of, two_people, verb_place
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
@@ -114,6 +114,8 @@ def _joins(tokens: Sequence[Token], place: int) -> bool:
         return False
     ahead = rest[0].low if rest else ""
     if low == "and" and place and (tokens[place - 1].low, ahead) in _PAIRS:
+        return False
+    if low == "and" and two_people(tokens, place):
         return False
     if low in ("though", "if") and place and tokens[place - 1].low == "as":
         return False

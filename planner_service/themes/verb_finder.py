@@ -36,8 +36,6 @@ FLOATING: Final = frozenset(("all", "both", "each"))
 _PARTICLES: Final = frozenset(("up", "down", "out", "off", "away", "back"))
 _SHORTEST: Final = 3
 """Letters of what is no plural: "as"."""
-_FEWEST_SAYING: Final = 2
-"""Words of a name and what its bearer does."""
 NAMING: Final = frozenset(("named", "called", "nicknamed"))
 """What stands between a noun and the name of whom it means."""
 _ONE_OF: Final = frozenset(("a", "an", "one", "some", "this"))
@@ -101,19 +99,21 @@ def _would(found: re.Match[str]) -> str:
 
 def verb_place(tokens: Sequence[Token]) -> int | None:
     """Where the first verb or auxiliary of a clause stands; None where it has none."""
-    if _opens_with_name(tokens):
-        return 1
+    if named := _opening_name(tokens):
+        return named
     for place, token in enumerate(tokens):
         if token.low in grammar().auxiliaries or _acts(tokens, place):
             return place
     return None
 
 
-def _opens_with_name(tokens: Sequence[Token]) -> bool:
-    """Whether a name opens the words before what its bearer does, though it may be a verb too: "Peter stands up"."""
-    if len(tokens) < _FEWEST_SAYING or not tokens[0].text[:1].isupper() or tokens[0].low not in names():
-        return False
-    return is_third_person(tokens[1].low)
+def _opening_name(tokens: Sequence[Token]) -> int:
+    """How many words name whom a clause opens with before what they do, though a name may be a verb too: "Peter | stands
+    up", "Grandma Rose | knits"; 0 where none do."""
+    called = tokens[:1] and (tokens[0].text[:1].isupper() and tokens[0].low in theme_words()["people"])
+    end = 1 + bool(called)
+    named = [token.text[:1].isupper() and token.low in names() for token in tokens[end - 1 : end]]
+    return end if any(named) and len(tokens) > end and is_third_person(tokens[end].low) else 0
 
 
 @cache
@@ -241,8 +241,8 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     """Whether a word acts as the verb of the noun that stands before it, at `at`."""
     word, before = tokens[place].low, tokens[at].low
     after = tokens[place + 1].low if place + 1 < len(tokens) else ""
-    if is_adjective(before) and not is_noun(before) and is_noun(word):
-        return False
+    if is_adjective(before) and not is_noun(before) and is_noun(word) and not (before == "other" and at == 1):
+        return False  # but "the other wipes the table"
     small = grammar().marks | grammar().prepositions
     named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[1 : at + 1]))
     if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word) and not named:
@@ -254,8 +254,22 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         acts = (
             not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks | grammar().numbers and at <= 2)
         )
-        return (past(base) == base and named) or (is_plural(before) and acts)
+        two = any(token.low == "and" and two_people(tokens[: place + 1], of) for of, token in enumerate(tokens[:at]))
+        return (past(base) == base and named) or two or (is_plural(before) and acts)
     return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
+
+
+def two_people(tokens: Sequence[Token], joint: int) -> bool:
+    """Whether "and", which stands there, joins two people who do something together: "Marta and her husband | argue"."""
+    people, end = theme_words()["people"], joint + 1
+    if not joint or not (tokens[joint - 1].low in people or tokens[joint - 1].text[:1].isupper()):
+        return False
+    end += tokens[end : end + 1] != [] and tokens[end].low in grammar().marks
+    named = tokens[end : end + 1] and (tokens[end].low in people or tokens[end].text[:1].isupper())
+    after = tokens[end + 1].low if end + 1 < len(tokens) else ""
+    base = verb_of(after)
+    acts = (bool(base) and after in (base, past(base))) or after in FLOATING | grammar().auxiliaries
+    return bool(named) and acts and not is_third_person(after)
 
 
 def _goes_on(after: str) -> bool:
