@@ -353,8 +353,10 @@ def _whose(one: ReadBeat) -> str:
 
 
 def _sounds(one: ReadBeat) -> bool:
-    """Whether a thing is only heard: nobody answers a phone because it rings."""
-    return one.clause.verb in theme_words()["sounds"] and not is_person(one.beat.who)
+    """Whether a thing, or somebody elsewhere, is only heard: nobody answers a phone because it rings, or her mother
+    calls."""
+    calls = one.clause.verb in ("call", "phone", "ring", "text") and one.clause.lemmas[1:2] != ("her",)
+    return calls if is_person(one.beat.who) else one.clause.verb in theme_words()["sounds"]
 
 
 def _may_be(caption: tuple[Skill, str], never: Sequence[str], others: Sequence[str], clause: Clause) -> bool:

@@ -17,6 +17,9 @@ from planner_service.themes.sentence_parser import Clause
 
 _REMEMBERED: Final = 6
 """Beats back to which "it" reaches."""
+_CALLS: Final = re.compile(r"\b(?:calls?|called|calling|phones?|telephone|rings?|rang|ringing)\b")
+_ANSWERS: Final = re.compile(r"(?:finally |then )?(?:picks?|picked) up(?: (?:after all|at last|again|finally|anyway))?")
+"""Of a phone that was told of."""
 _RETURNS: Final = ("go", "return", "get", "come", "sit", "walk", "settle", "sink", "crawl", "climb", "head")
 _MAT: Final = re.compile(r"\b(?:mat|rug|carpet|floor)\b")
 _RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
@@ -26,6 +29,9 @@ def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequ
     """A beat, and all of them, with what "it" is in its clause: who sits down at a desk and "opens it" opens the diary
     that was named before."""
     read = beats[index]
+    if _ANSWERS.fullmatch(read.text) and any(_CALLS.search(one.text) for one in beats[max(index - _REMEMBERED, 0) : index]):
+        read = replace(read, clause=replace(read.clause, lemmas=("answer", "the", "phone")))
+        return read, [*beats[:index], read, *beats[index + 1 :]]
     meant = meant_by_it(read.text, [one.text for one in beats[max(index - _REMEMBERED, 0) : index]])
     if not meant:
         return read, beats

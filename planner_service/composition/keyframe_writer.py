@@ -47,6 +47,7 @@ from planner_service.composition.rest_place import (
     on_seat_ahead,
     only_stands_for,
     rises_later,
+    sits,
     sits_up,
 )
 from planner_service.composition.stand_in import SEATS, is_too_much
@@ -287,7 +288,7 @@ class KeyframeWriter:
                 self._rise(index, deed, mood)
             case Skill.LOCO if resting is not None and goes_on(read, deed):
                 self.body.show(index)
-            case Skill.LOCO if deed.row.seated and resting is not None and resting.skill is Skill.SITDOWN:
+            case Skill.LOCO if deed.row.seated and sits(resting) and "stand" not in read.clause.lemmas:
                 self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
             case Skill.LOCO if deed.row.lying and lies(resting) and not deed.named:
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)

@@ -44,6 +44,11 @@ def lies(resting: PlannedKeyframe | None) -> bool:
     return resting is not None and resting.skill is Skill.LIEDOWN
 
 
+def sits(resting: PlannedKeyframe | None) -> bool:
+    """Whether a body sits."""
+    return resting is not None and resting.skill is Skill.SITDOWN
+
+
 def is_there(resting: PlannedKeyframe, deed: Deed, skill: Skill) -> bool:
     """Whether a deed may be done on what a body rests on: sitting or lying, as `skill` says."""
     kinds = furniture.categories_of(resting.furniture)

@@ -6,7 +6,7 @@ Words are changed one by one where their forms tell what they are; what is not s
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 from typing import Final
 
@@ -63,7 +63,7 @@ _PLURAL: Final = frozenset(("i", "we", "you", "they"))
 """Who does things in verbs' base forms."""
 _IT_IS: Final = re.compile(r"(“[^”]*”|\"[^\"]*\")|\b([Ii]t|[Hh]e|[Ss]he|[Tt]here|[Tt]hat)['’]s\b(?! been| \w+ed\b)")
 """What is said, else a contraction that has a past: "it's"."""
-_TORN: Final = ("it", "them", "up", "open", "off", "the", "apart", "down", "out", "a")
+_TORN: Final = ("it", "them", "up", "open", "off", "the", "apart", "down", "out", "a", "one", "another", "each")
 _TENSELESS: Final = ("ing", "participle")
 
 
@@ -77,7 +77,8 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     told.stretches = located(told.tokens, beats)
     told.ends = sentence_ends(theme, told.tokens)
     several = own in _PLURAL or (own not in _SINGULAR and is_plural(head_of(hero).lower()))  # "two friends dance, sing"
-    _put_in_past(told, plain=several, all_of_it=_is_present(told))
+    together = {one.text.split()[0].lower() for one in clauses if " and " in one.subject}  # "Emma and Luca | quarrel"
+    _put_in_past(told, plain=several, all_of_it=_is_present(told), together=together)
     _tell_of(voice, told.tokens, hero, own)
     _say_who(voice, told, beats)
     _capitalise(told)
@@ -92,12 +93,12 @@ def _is_present(told: Retelling) -> bool:
     return 2 * after <= len(verbs) - tenseless
 
 
-def _put_in_past(told: Retelling, plain: bool, all_of_it: bool) -> None:
+def _put_in_past(told: Retelling, plain: bool, all_of_it: bool, together: Collection[str]) -> None:
     """Every finite verb, or what "I" and "you" do in the midst of what is past; `plain`: the theme's person does things
-    in verbs' base forms."""
+    in verbs' base forms, as two people do what is in `together`."""
     heads = {one.verb for one in told.stretches if one.verb is not None and not _is_list(told, one)}
-    joined = _joined_heads(told)
     words = [(at, token) for at, token in enumerate(told.tokens) if token.is_word]
+    joined = _joined_heads(told, together)
     low = ["", "", *_low(told.tokens), ""]
     for number, (at, token) in enumerate(words):
         days = story_words().days
@@ -108,7 +109,8 @@ def _put_in_past(told: Retelling, plain: bool, all_of_it: bool) -> None:
         elif number and _is_gone_to(words[number - 1][1], token, low[number + 3]):
             token.told = f"and {past(token.low)}"  # "went | and sat"
         elif not token.quoted and token.told == token.text:
-            new = days.get(token.low) or _past(low[number : number + 4], token.low, at in heads, plain or at in joined)
+            base = plain or at in joined or token.low in together
+            new = days.get(token.low) or _past(low[number : number + 4], token.low, at in heads, base)
             token.told = (new.capitalize() if token.text[0].isupper() else new) if new else token.told
 
 
@@ -130,16 +132,21 @@ def _low(tokens: Sequence[Token]) -> Iterator[str]:
             mark = ","
 
 
-def _joined_heads(told: Retelling) -> set[int]:
-    """Verbs without an ending that go on from one that has it: "he becomes excited, | run around the house"."""
-    pairs = ((one, other) for one, other in pairwise(told.stretches) if one.verb is not None and other.verb is not None)
-    return {
-        other.verb
-        for one, other in pairs
-        if other.verb is not None and other.verb == other.start and "to" not in told.words(one).lower().split()
-        and "".join(token.text for token in told.tokens[one.end : other.start]).strip(" ,") in ("", "and", "then")
-        and one.verb is not None and form_of(told.tokens[one.verb].low) == "present"
-    }  # fmt: skip
+def _joined_heads(told: Retelling, together: Collection[str]) -> set[int]:
+    """Verbs without an ending that go on from one that has it, or from what several do: "he becomes excited, | run
+    around the house", "they kiss | and sit down"."""
+    found = set[int]()
+    for one, other in pairwise(told.stretches):
+        if one.verb is None or other.verb is None or other.verb != other.start:
+            continue
+        between = "".join(token.text for token in told.tokens[one.end : other.start]).strip(" ,")
+        if between not in ("", "and", "then") or "to" in told.words(one).lower().split():
+            continue
+        verb, *before = (token.low for token in told.tokens[one.verb :: -1] if token.is_word)
+        several = verb in bases(verb) and (verb in together or {*before[:1]} & _PLURAL or one.verb in found)
+        if several or form_of(verb) == "present":
+            found.add(other.verb)
+    return found
 
 
 def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None:

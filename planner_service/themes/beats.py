@@ -310,6 +310,8 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             moods.append(replace(one, beat=found))
             mood = one.felt
             continue
+        elif mood is Emotion.HAPPY and one.clause.verb in _CRIES and one.clause.lemmas[1:2] != ("at",):
+            one = one.in_mood(mood)  # who has won screams for joy
         elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
                 mood = one.felt

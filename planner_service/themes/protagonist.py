@@ -184,6 +184,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     nouns = [] if pronoun and all(_is_plural(one.subject) and one.joint in _ASIDE for one in nouns) else nouns
     if nouns:
         hero = max(nouns, key=lambda one: _heroic(one, pronoun) + min(deeds[one.subject], 4)).subject
+        theirs = {"her": "she", "his": "he"}.get(hero.split()[0].lower(), "")
+        if theirs and theirs == pronoun and (not is_name(head_of(hero)) or pronouns_of(hero) != pronoun):
+            return pronoun.capitalize()  # "Her mother calls. | She | lets it ring"
         return _owner_of(hero) if pronoun and pronouns_of(hero) not in ("", pronoun) else hero
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"

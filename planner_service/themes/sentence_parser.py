@@ -258,7 +258,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         # It tells how somebody is or where, and is nothing that anybody does.
         Clause(_text(piece.source, some), "", "", _lemmas(some), ",", aside=True, sentence=sentence)
         for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
-        if not set(denials).issuperset(some)
+        if not set(denials).issuperset(some) and some[-1].low != "and"  # "my roommate and | I"
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
 
@@ -457,8 +457,8 @@ def _describes(words: Sequence[str]) -> bool:
 def _starts_subject(words: Sequence[str], place: int) -> bool:
     """Whether a noun with its mark, or a name, begins there that no preposition goes before: "at last the news"."""
     before, word = words[place - 1], words[place]
-    if before.lower() in NAMING | {"and"}:
-        return False  # "a robot named | Bolt", "Marta and | her husband"
+    if before.lower() in NAMING | {"and"} | (theme_words()["people"] if place > 1 else frozenset()):
+        return False  # "a robot named | Bolt", "Marta and | her husband", "her husband | Tom"
     is_start = word.lower() in grammar().marks or (word[:1].isupper() and not before[:1].isupper())
     return is_start and before.lower() not in grammar().marks | grammar().prepositions
 

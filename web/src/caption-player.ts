@@ -46,8 +46,10 @@ async function play(caption: string, skill: CaptionWords["skill"], holder: HTMLE
   const example = await getExample(skill, caption, signal);
   // What was closed while it was being posted is thrown away all the same, so the posting itself is not cut off.
   const { id } = await postMotion(example, newKey());
+  // Whoever still asks for it has an answer before it is gone.
+  let asked: Promise<void> = Promise.resolve();
   const drop = (): void => {
-    deleteStory(id).catch(() => undefined);
+    asked.catch(() => undefined).finally(() => deleteStory(id)).catch(() => undefined);
   };
   if (signal.aborted) {
     drop();
@@ -58,13 +60,15 @@ async function play(caption: string, skill: CaptionWords["skill"], holder: HTMLE
   const film = new Film(id, () => undefined, last);
   signal.addEventListener("abort", () => film.dispose());
   fill(holder, film.element);
-  const refresh = async (): Promise<void> => {
-    const story = await getStory(id, signal);
+  const look = async (): Promise<void> => {
+    const story = await getStory(id);
+    if (signal.aborted) return;
     film.update(story);
     const own = story.keyframes[last];
     status.hidden = own?.end !== null && own?.end !== undefined;
     if (story.state === "failed") throw new Error(story.error?.detail ?? "the service gives no reason");
   };
+  const refresh = (): Promise<void> => (asked = asked.catch(() => undefined).then(look));
   const told = (error: unknown): void => {
     if (signal.aborted) return;
     status.hidden = false;
