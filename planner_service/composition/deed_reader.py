@@ -260,7 +260,7 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            if one.beat.who.split(" ")[0].lower() in _NOBODY or _sounds(one):
+            if one.beat.who.split(" ")[0].lower() in _NOBODY | {"he", "she"} or _sounds(one):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one

@@ -40,6 +40,7 @@ from planner_service.composition.rest_place import (
     eats,
     goes_on,
     is_beside,
+    is_on,
     is_there,
     lies,
     on_feet,
@@ -290,7 +291,7 @@ class KeyframeWriter:
                 self.body.show(index)
             case Skill.LOCO if deed.row.seated and sits(resting) and "stand" not in read.clause.lemmas:
                 self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
-            case Skill.LOCO if deed.row.lying and lies(resting) and not deed.named:
+            case Skill.LOCO if deed.row.lying and lies(resting) and (not deed.named or is_on(resting, deed)):
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case Skill.LOCO if resting is not None and lies(resting) and not deed.named and eats(deed):
                 deed = replace(deed, pieces=(resting.furniture,), named=True)  # sitting up

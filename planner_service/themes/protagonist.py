@@ -251,9 +251,17 @@ def called(clauses: Sequence[Clause], hero: str) -> str:
     most = _told_most(clauses)
     if hero.lower() in _FIRST_PERSON and _deeds_by(clauses, ("he", "she"))[most] <= _deeds_by(clauses, ("i",))["i"]:
         return ""
+    if most and _is_listed(hero) and _by_what_is_theirs(clauses, hero) == pronouns_of(hero):
+        return pronouns_of(hero)
     if most and _is_listed(hero) and not any(_may_be(one.subject, hero, most) for one in clauses):
         return most  # what a theme says tells more than a list of names
     return pronouns_of(hero) or most
+
+
+def _by_what_is_theirs(clauses: Sequence[Clause], hero: str) -> str:
+    """The pronoun that a hero's own deeds tell: Oskar, who "burps her on his shoulder", is he; "" where none does."""
+    own = {word for one in clauses if one.doer == hero for word in one.lemmas}
+    return "he" if not {"his", "himself"}.isdisjoint(own) else "she" if "herself" in own else ""
 
 
 def _is_listed(hero: str) -> bool:
