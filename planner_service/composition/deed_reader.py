@@ -31,10 +31,10 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
-from planner_service.themes.beats import ReadBeat
+from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.opening_words import comes_in, opening_of
-from planner_service.themes.protagonist import head_of, is_person
+from planner_service.themes.protagonist import head_of, is_name, is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
@@ -260,10 +260,13 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            if one.beat.who.split(" ")[0].lower() in _NOBODY | {"he", "she"} or _sounds(one):
+            first = one.beat.who.split(" ")[0]
+            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or _sounds(one):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
+        if one.sure and one.clause.verb in EXPRESSIONS:
+            return one  # who "weeps quietly" is not at peace
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
             return one

@@ -326,6 +326,9 @@ class KeyframeWriter:
             elif stands_in:
                 self.why[index] = UNSHOWN  # nobody gets up for what would show no more
             return stands_in or (deed.skill is Skill.TOUCH and self._is_on_body(index, read))
+        if deed.is_gesture and deed.skill is Skill.LOCO and lies(resting) and not deed.row.lying and is_beside(read):
+            self.why[index] = UNSHOWN  # "lies on the bed tossing a ball": nobody gets up for it
+            return True
         rests = bool(self.keyframes) and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)
         if rests and lemma_of(head_of(read.clause.subject)) in theme_words()["body"]:
             self.body.show(index)  # "leans against the wall, arms crossed"
@@ -493,7 +496,9 @@ class KeyframeWriter:
         if part is not None and is_gainsaid(read.clause, part.keyframes[-1:]):
             part = None
         at = next((one.furniture for one in self.keyframes[:-3:-1] if not one.on_floor), "floor")
-        by_pronoun = deed.named and bool({"it", "them"} & {*read.clause.lemmas}) and not pieces_in(read.clause.text)
+        by_pronoun = deed.named and not pieces_in(read.clause.text) and (
+            bool({"it", "them"} & {*read.clause.lemmas}) or deed.pieces[:1] == ("picture",)
+        )  # fmt: skip
         meant = replace(deed, named=deed.named and not by_pronoun)  # "it" is the parcel, not the table it was set on
         linked = self.body.whereabouts.of(read.clause, meant) if skill is Skill.TOUCH else None
         if linked is not None and affords(linked[1], "touch") and self.places.has(linked[1]):

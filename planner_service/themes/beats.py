@@ -294,7 +294,8 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
         after = read[index + 1] if index + 1 < len(read) else None
         together = after is not None and after.clause.sentence == one.clause.sentence
         before = read[index - 1] if index else one
-        if one.beat.kind == "memory" or (one.clause.sentence in recalled and one.clause.joint in RECALLING):
+        told = one.clause.joint in RECALLING or (before.beat.kind == "memory" and one.clause.subject != "")
+        if one.beat.kind == "memory" or (one.clause.sentence in recalled and told):
             own = one.felt or mood
             moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": own})))
             continue
@@ -340,6 +341,8 @@ def _emotion(text: str) -> tuple[Emotion | None, bool]:
     """The emotion the words show: drunk if that is named, else the last one named, else the last hint."""
     found = [feeling for feeling in feelings(text) if feeling.emotion != "neutral"]
     named = [feeling.emotion for feeling in found if feeling.sure]
+    if Emotion.HAPPY in named and _TEARS.search(text):
+        return Emotion.HAPPY, True
     if named:
         return (Emotion.DRUNK if Emotion.DRUNK in named else named[-1]), True
     first = [feeling for feeling in found if feeling.start == 0]  # what is done hints more than what it is done to

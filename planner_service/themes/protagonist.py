@@ -70,11 +70,23 @@ def cast_by(theme: str, character: Character) -> Character:
 def _called_as(hero: str, pronoun: str) -> str:
     """What to call whom a theme is about: by name ("Mr. Brown", "Aunt Rosa"), else as the theme does ("the old man",
     "my sister"); "" for "she", "I" and "a person"."""
-    words = [token.text for token in tokens_of(hero)]
-    several = [list(part) for is_and, part in groupby(words, lambda word: word in ("and", ",")) if not is_and]
-    one = next((part for part in several if pronoun and pronouns_of(" ".join(part)) == pronoun), [*several, []][0])
+    one = _each_of(hero, pronoun)[0].split()
     name = _name_among(one) or ("" if _is_pronoun(hero) else _noun_as_told(one))
     return name if len(name) <= MAX_NAME_LENGTH else f"the {head_of(hero)}"[:MAX_NAME_LENGTH]
+
+
+def _each_of(hero: str, pronoun: str) -> list[str]:
+    """The people of a subject, the one that is played first: whom the theme calls by the pronoun, else the first."""
+    words = [token.text for token in tokens_of(hero)]
+    each = [" ".join(part) for is_and, part in groupby(words, lambda word: word in ("and", ",")) if not is_and]
+    return sorted(each or [""], key=lambda one: not pronoun or pronouns_of(one) != pronoun)
+
+
+def _is_called_so(subject: str, person: str) -> bool:
+    """Whether a subject means one of several people: "Karim", or "the brother", of "her brother Karim"."""
+    name = _name_among(subject.split())
+    same = name == _name_among(person.split()) if name else head_of(subject).lower() == head_of(person).lower()
+    return bool(subject) and not _is_pronoun(subject) and same
 
 
 def _name_among(words: Sequence[str]) -> str:
@@ -350,7 +362,12 @@ def names_somebody(clause: Clause) -> bool:
 def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     """Whether a subject is whom the theme is about, whom it calls by a pronoun. Nobody named: it goes on with who it
     was about."""
-    name = _name_among([token.text for token in tokens_of(hero)])
+    mine, *others = _each_of(hero, pronoun)
+    if any(_is_called_so(subject, one) for one in others):
+        return False  # of "Nadia and her brother Karim" what Karim does
+    if others and _is_called_so(subject, mine):
+        return True
+    name = _name_among([token.text for token in tokens_of(mine)])
     if not subject or subject.lower() in (hero.lower(), name.lower()):
         return True
     if subject.lower().endswith(("both of them", "all of them", "two of them", "both of us")):

@@ -108,8 +108,8 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
 
 
 def _opening_name(tokens: Sequence[Token]) -> int:
-    """How many words name whom a clause opens with before what they do, though a name may be a verb too: "Peter | stands
-    up", "Grandma Rose | knits"; 0 where none do."""
+    """How many words name whom a clause opens with, though a name may be a verb too: "Peter | stands up", "Grandma Rose
+    | knits"; 0 where none do."""
     called = tokens[:1] and (tokens[0].text[:1].isupper() and tokens[0].low in theme_words()["people"])
     end = 1 + bool(called)
     named = [token.text[:1].isupper() and token.low in names() for token in tokens[end - 1 : end]]
@@ -260,12 +260,13 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
 
 
 def two_people(tokens: Sequence[Token], joint: int) -> bool:
-    """Whether "and", which stands there, joins two people who do something together: "Marta and her husband | argue"."""
+    """Whether "and", which stands there, joins two people who do something: "Marta and her husband | argue"."""
     people, end = theme_words()["people"], joint + 1
     if not joint or not (tokens[joint - 1].low in people or tokens[joint - 1].text[:1].isupper()):
         return False
     end += tokens[end : end + 1] != [] and tokens[end].low in grammar().marks
     named = tokens[end : end + 1] and (tokens[end].low in people or tokens[end].text[:1].isupper())
+    end += tokens[end + 1 : end + 2] != [] and tokens[end].low in people and tokens[end + 1].text[:1].isupper()
     after = tokens[end + 1].low if end + 1 < len(tokens) else ""
     base = verb_of(after)
     acts = (bool(base) and after in (base, past(base))) or after in FLOATING | grammar().auxiliaries
