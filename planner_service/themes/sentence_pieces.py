@@ -215,7 +215,7 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
 
 
 def _is_list(pieces: Sequence[Piece]) -> bool:
-    """Whether pieces are short notes of what is done, one after the other: "wake up, yawn, get dressed, coffee, leave"."""
+    """Whether pieces are short notes of what is done: "wake up, yawn, get dressed, coffee, leave"."""
     joined = all(piece.joint in ("", ",", "and", "then") and len(piece.tokens) <= _MOST_OF_NOTE for piece in pieces)
     nobody = all(grammar().subjects.isdisjoint(token.low for token in piece.tokens) for piece in pieces)
     return len(pieces) > _FEWEST_NOTES and joined and nobody and 2 * sum(map(_orders, pieces)) > len(pieces)
