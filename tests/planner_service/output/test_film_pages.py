@@ -38,6 +38,19 @@ def test_words_go_when_what_they_tell_is_over_as_soon_as_they_could_be_read() ->
     assert short.stop / FPS == pytest.approx(QUICK * asked, abs=0.1), "it is read quickly, and he is gone"
 
 
+def test_what_is_told_first_and_done_last_is_shown_when_it_is_done() -> None:
+    text = "Before he watered the plant, Idris opened the curtains and stretched."
+    spans = spans_of(text, "Before he watered the plant", "opened the curtains", "stretched")
+    last, *rest = spans
+    told = Told(
+        "", text, (replace(last, keyframes=(2,)), *(replace(one, keyframes=(k,)) for k, one in enumerate(rest)))
+    )
+    shown = subtitles(told, [(0, 200), (200, 400), (400, 600)], FPS)
+    assert ["opened" in shown[0].text, "Before" in shown[-1].text] == [True, True]
+    assert shown[0].start < 200
+    assert shown[-1].stop > 400
+
+
 def test_a_film_is_of_the_home_the_motion_and_the_words_of_its_story() -> None:
     story = Pipeline().make(StoryRequest("A person sits down on the sofa."))
     filmed = Filmed.of(story)
