@@ -209,14 +209,16 @@ def _pieces(told: Told) -> Iterator[_Piece]:
 
 
 def _pages(told: Told, piece: _Piece) -> Iterator[_Page]:
-    """The words of a piece, as many at a time as fit into one picture, without whole sentences of what is not seen."""
+    """The words of a piece, as many at a time as fit into one picture, without whole sentences of what is not seen, nor
+    something that stands for it."""
     thought = [False] * len(told.text)
     for span in told.thoughts:
         thought[span.start : span.end] = [True] * (span.end - span.start)
     for start, stop in _fitting(told.text, piece):
         words = told.text[start:stop]
         seen = [not thought[start + at] for at, letter in enumerate(words) if letter.isalnum()]
-        if seen and (any(seen) or not _is_whole(told.text, start, stop)):
+        played = any(span.start < stop and start < span.end for span in told.spans)
+        if seen and (played or any(seen) or not _is_whole(told.text, start, stop)):
             yield _page(told.text, start, stop, thought)
 
 

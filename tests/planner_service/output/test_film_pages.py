@@ -143,3 +143,12 @@ def test_words_that_are_not_seen_are_slanted_and_whole_subtitles_of_them_left_ou
     assert slanted.startswith("waited nervously at the window")
     assert shown[-1].text.endswith("She slept.")
     assert all(any(not slants for row in line.lines for _, slants in row) for line in shown)
+
+
+def test_words_of_what_something_stands_for_are_shown_slanted_and_those_of_nothing_left_out() -> None:
+    text = "He unlocked the door. Drop keys. Nobody came. He slept."
+    spans = spans_of(text, "He unlocked the door.", "Drop keys.", "He slept.")
+    unseen = [text.index(words) for words in ("Drop keys.", "Nobody came.")]
+    told = Told("", text, spans, (Span(unseen[0], unseen[1] + len("Nobody came."), ()),))
+    shown = subtitles(told, [(0, 200), (200, 400), (400, 600)], FPS)
+    assert any(line.text.startswith("Drop keys.") and line.slanted for line in shown)
