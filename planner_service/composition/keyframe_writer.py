@@ -106,7 +106,8 @@ def _not_acted(read: ReadBeat) -> str:
     """Why a beat of a kind that is not acted is not."""
     if read.clause.aside and read.beat.kind != "memory":
         return SPOKEN_OF
-    return NO_DEED if read.beat.kind == "other" and not read.beat.who else NOT_ACTED[read.beat.kind]
+    nobody = not read.beat.who or (read.beat.who.lower() in ("it", "there") and read.clause.verb == "be")
+    return NO_DEED if read.beat.kind == "other" and nobody else NOT_ACTED[read.beat.kind]
 
 
 @dataclass(frozen=True)

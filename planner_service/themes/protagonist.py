@@ -40,6 +40,8 @@ _MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing
 _OWNED: Final = re.compile(r"^(?P<owner>.*)['’]s (?=\w)")
 _SOMEBODY: Final = ("somebody", "someone")
 _FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
+_TOGETHER: Final = frozenset(("couple", "pair", "family", "newlyweds"))
+"""What whom a theme is about is one of."""
 _SUBJECTS: Final = frozenset(("he", "she", "they", "who"))
 
 
@@ -383,6 +385,8 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
         return True
     if not is_person(subject):
         return False
+    if hero and head_of(subject).lower() in _TOGETHER:
+        return True  # "the couple quarrel: Joanna shouts"
     if not hero or hero.lower() in _SUBJECTS:
         called = pronouns_of(subject) in ("", hero.lower()) or hero.lower() not in ("he", "she")
         return subject[:1].isupper() and " " not in subject and called and subject.lower() not in _SOMEBODY
