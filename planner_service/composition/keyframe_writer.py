@@ -449,9 +449,13 @@ class KeyframeWriter:
                 self.body.show(index)
                 return
             caption = others[0]
+        lies_at = self.body.whereabouts.of(read.clause, deed) if deed.is_gesture and piece == "floor" else None
+        if lies_at is not None and self.places.has(lies_at[1]):  # "the letter lies on the table. She opens it"
+            piece = lies_at[1]
         if deed.is_gesture and not deed.row.walks:  # gone to, then done there
             elsewhere = bool(self.keyframes) and read.room not in (None, self.body.room)
-            if elsewhere if piece == "floor" else not self.body.is_there(piece, read.room):
+            touched = last is not None and (last.skill, last.furniture) == (Skill.TOUCH, piece)
+            if elsewhere if piece == "floor" else not (touched or self.body.is_there(piece, read.room)):
                 self.body.put(index, Skill.LOCO, mood, usual(Skill.LOCO, mood), piece, read.room)
             piece = "floor"
         self.body.put(index, Skill.LOCO, mood, caption, piece, read.room)
