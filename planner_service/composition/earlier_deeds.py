@@ -20,6 +20,9 @@ _REMEMBERED: Final = 6
 _CALLS: Final = re.compile(r"\b(?:calls?|called|calling|phones?|telephone|rings?|rang|ringing)\b")
 _ANSWERS: Final = re.compile(r"(?:finally |then )?(?:picks?|picked) up(?: (?:after all|at last|again|finally|anyway))?")
 """Of a phone that was told of."""
+_LETTERS: Final = frozenset(("letter", "note", "card", "postcard", "telegram", "bill", "list", "invitation"))
+_READ: Final = _LETTERS | {"book", "novel", "newspaper", "magazine", "diary", "text", "message", "email", "comic"}
+_READS_IT: Final = re.compile(r"(?:re)?reads? it\b")
 _PHOTOGRAPHS: Final = frozenset(("photograph", "photo", "snapshot", "postcard", "polaroid", "drawing"))
 _PICTURE: Final = re.compile(r"^\w+ (?:the|that) picture\b")
 _RETURNS: Final = ("go", "return", "get", "come", "sit", "walk", "settle", "sink", "crawl", "climb", "head")
@@ -34,6 +37,8 @@ def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequ
     clause = read.clause
     if _ANSWERS.fullmatch(read.text) and any(_CALLS.search(one.text) for one in before):
         clause = replace(clause, lemmas=("answer", "the", "phone"))
+    elif letter := _letter_meant(read, before):
+        clause = replace(clause, lemmas=(clause.verb, "the", letter, *clause.lemmas[2:]))
     elif photograph := _photograph_meant(read, before):
         lemmas = (photograph if word == "picture" else word for word in clause.lemmas)
         clause = replace(clause, text=clause.text.replace("picture", photograph), lemmas=tuple(lemmas))
@@ -43,6 +48,13 @@ def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequ
         clause = replace(clause, text=told, lemmas=(*clause.lemmas[:1], "the", lemma_of(meant), *clause.lemmas[2:]))
     read = replace(read, clause=clause)
     return read, [*beats[:index], read, *beats[index + 1 :]]
+
+
+def _letter_meant(read: ReadBeat, before: Sequence[ReadBeat]) -> str:
+    """What is read that was told of: "opens the letter, | reads it"; "" of other words, and where a book was."""
+    told = (word for one in reversed(before) for word in one.clause.lemmas if word in _READ)
+    found = next(told, "") if _READS_IT.match(read.text) else ""
+    return found if found in _LETTERS else ""
 
 
 def _photograph_meant(read: ReadBeat, before: Sequence[ReadBeat]) -> str:
