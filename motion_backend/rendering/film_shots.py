@@ -18,7 +18,7 @@ from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points, prop_tracks
-from motion_backend.rendering.camera import FOV, YAWS, Shot, liking
+from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
 from motion_backend.rendering.film_edit import FilmEdit
 from motion_backend.rendering.film_entrance import Entrance
@@ -85,6 +85,10 @@ AT_DOOR: Final = 3.0
 """What it counts in the first shot to see the door by which somebody comes in."""
 TO_WINDOW: Final = 4.0
 """What it counts to see the window that somebody looks out of."""
+TO_FRONT: Final = 3.0
+"""What it counts to see the front of what is touched well,"""
+FRONTAL: Final = 0.4
+"""and how well it must be seen, if any camera sees it so: from the side a cabinet is a board that hides the hand."""
 TRIES: Final = 12
 """Views of a shot of which pictures are looked at."""
 
@@ -193,6 +197,7 @@ class _Director:
         watched = np.empty(0, np.int64) if shown[1][0] is not None else self._watched(frames)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
+        front = self._front(framing, sight)
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
         scored = []
         for pitch in PITCHES:
@@ -202,11 +207,13 @@ class _Director:
                 score -= FAR * _distance(camera)
                 if len(watched):
                     score += WATCHED * _is_faced(ahead, -camera.axes[2], PROFILE if framing.deed else QUARTER)
+                if front is not None:
+                    score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
                     score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), self._doing(framing)).mean())
                 score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
                 scored.append(_View(score - self._broken(camera, before, start), camera))
-        return _sorted(scored)
+        return _sorted(_frontal(scored, front))
 
     def _reached(self, start: int, stop: int) -> Array:
         """Where joints and the crown go in some frames, at the height of a jump too. (N, 3)."""
@@ -225,6 +232,12 @@ class _Director:
         start, stop = framing.deed or (framing.start, framing.stop)
         return self.joints[(start + stop - 1) // 2, list(framing.hands)]
 
+    def _front(self, framing: Framing, sight: Sight) -> Front | None:
+        """Of what is touched, if that stands up before the hand, in the last frame of its deed."""
+        _, stop = framing.deed or (framing.start, framing.stop)
+        touched = any(p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop for p in self.motion.phases)
+        return sight.front(self.joints[stop - 1, framing.hands[0]]) if framing.hands and touched else None
+
     def _outlook(self, start: int, stop: int) -> Outlook | None:
         """The window that the body looks out of in some frames."""
         return Outlook.of(self.set.home, self.motion, self.joints[start:stop], self.turns[start:stop])
@@ -242,6 +255,7 @@ class _Director:
         points = np.concatenate([_head(poses, turns), hands, *held])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
+        front = self._front(close, sight)
         upright = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
         steep = STEEP[0 if upright else 1]
         scored = []
@@ -256,9 +270,10 @@ class _Director:
                 score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * pitch
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
+                    score += TO_FRONT * front.seen(camera) if front is not None else 0.0
                     score -= ALONG * max(abs(float(arm @ towards)) for arm in _directions(poses, close.hands))
                 scored.append(_View(score - self._broken(camera, before, close.start), camera))
-        return _sorted(scored)
+        return _sorted(_frontal(scored, front))
 
     def _broken(self, camera: Camera, before: FilmShot | None, frame: int) -> float:
         """What the rules of cutting count against a camera: no jump from nearly the same place, nobody turns round."""
@@ -287,6 +302,13 @@ def _sampled(start: int, stop: int) -> NDArray[np.int64]:
 def _middle(points: Array) -> tuple[float, float, float]:
     x, y, z = ((points.min(axis=0) + points.max(axis=0)) / 2).tolist()
     return x, y, z
+
+
+def _frontal(views: list[_View], front: Front | None) -> list[_View]:
+    """The views that show the front of what is touched, all where none does."""
+    if front is None:
+        return views
+    return [view for view in views if front.seen(view.camera) >= FRONTAL] or views
 
 
 def _sorted(views: Sequence[_View]) -> list[_View]:
