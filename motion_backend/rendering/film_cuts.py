@@ -35,6 +35,8 @@ STILL: Final = 0.3
 """Metres that a face moves in that while: a camera that stands still would lose it."""
 HELD: Final = 0.5
 """The same of a hand that touches."""
+HELD_SECONDS: Final = 1.0
+"""For which something is in a hand that must be seen."""
 IN_HAND: Final = 0.25
 """Metres from the middle of a thing to a wrist that has a part in holding it."""
 TO_HEAD: Final = 0.30
@@ -169,7 +171,7 @@ class _Finder:
 
     def deed(self, start: int, stop: int) -> Framing | None:
         """The frames in which something is touched, else those in which it is in hand, and the hands that do so."""
-        return self.reach(start, stop) or next(self._holding(start, stop), None)
+        return self.reach(start, stop) or next(self._holding(start, stop, HELD_SECONDS), None)
 
     def reach(self, start: int, stop: int) -> Framing | None:
         """The frames in which something is touched, or in which a hand is drawn and hits it, and with which hands."""
@@ -218,11 +220,11 @@ class _Finder:
         hands = tuple(np.asarray(HANDS)[busy].tolist())
         return self._around(start, stop, middle, Subject.FACE, hands, STILL)
 
-    def _holding(self, start: int, stop: int) -> Iterator[Framing]:
-        """Frames in which something is in some hands for a while."""
+    def _holding(self, start: int, stop: int, seconds: float) -> Iterator[Framing]:
+        """Frames in which something is in some hands for so long."""
         for track in self.props:
             first, last = max(start, track.start), min(stop, track.stop)
-            if last - first < CLOSE_SECONDS * self.motion.fps:
+            if last - first < seconds * self.motion.fps:
                 continue
             there = track.positions[first - track.start : last - track.start]
             away = np.linalg.norm(self.joints[first:last, HANDS] - there[:, None], axis=-1).mean(axis=0)
@@ -231,7 +233,7 @@ class _Finder:
 
     def _held(self, start: int, stop: int) -> Framing | None:
         """The hands, where something is in them for most of a while."""
-        for held in self._holding(start, stop):
+        for held in self._holding(start, stop, CLOSE_SECONDS):
             middle = (held.start + held.stop) // 2
             found = self._around(start, stop, middle, Subject.HANDS, held.hands, HELD)
             if found is not None and held.start <= found.start and found.stop <= held.stop:

@@ -20,7 +20,7 @@ from motion_backend.motion import Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points, prop_tracks
 from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
-from motion_backend.rendering.film_edit import FilmEdit
+from motion_backend.rendering.film_edit import FilmEdit, Frames
 from motion_backend.rendering.film_entrance import Entrance
 from motion_backend.rendering.film_outlook import Outlook
 from motion_backend.rendering.film_set import FilmSet
@@ -58,10 +58,12 @@ FAR: Final = 0.14
 """What a metre of distance counts: faces are seen from near."""
 REPEATED: Final = 1.6
 """What a jump cut counts."""
-REVERSED: Final = 0.9
+REVERSED: Final = 3.0
 """What it counts to go on from the other side, where who went to the right goes to the left."""
-SIDE: Final = 0.3
-"""From how much of a body's turn across the picture on it has a side."""
+SIDE: Final = 0.25
+"""From how much of its way, or of where it is turned, across the picture on a body has a side."""
+ON_THE_WAY: Final = (8, 0.15)
+"""Frames before and after a cut, and the metres from which on a body that goes so far in them is on a way."""
 FACED, WIDEST = 1.2, 1.2
 """What it counts to see a face, best at a quarter turned, and the turn in radians from which it is none."""
 WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
@@ -194,7 +196,7 @@ class _Director:
         ]
         openings = [(one, worth) for one, worth in shown if one is not None]
         points = np.concatenate([self._reached(start, stop), *(one.corners for one, _ in openings)])
-        watched = np.empty(0, np.int64) if shown[1][0] is not None else self._watched(frames)
+        watched = np.empty(0, np.int64) if shown[1][0] is not None else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         front = self._front(framing, sight)
@@ -222,10 +224,12 @@ class _Director:
         frames = np.unique([*frames.tolist(), high, stop - 1])
         return np.concatenate([self.joints[frames].reshape(-1, 3), _crowns(self.joints[frames], self.turns[frames])])
 
-    def _watched(self, frames: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Those of some frames in which nobody walks."""
+    def _watched(self, frames: NDArray[np.int64], deed: Frames | None) -> NDArray[np.int64]:
+        """Those of some frames in which nobody walks, or hands do what it is about."""
+        first, stop = deed or (0, 0)
         walks = [p for p in self.motion.phases if p.kind is PhaseKind.WALK]
-        return np.array([f for f in frames.tolist() if not any(p.start <= f < p.stop for p in walks)], np.int64)
+        stands = [f for f in frames.tolist() if first <= f < stop or not any(p.start <= f < p.stop for p in walks)]
+        return np.array(stands, np.int64)
 
     def _doing(self, framing: Framing) -> Array:
         """Where the hands are that do something, in the midst of it. (H, 3)."""
@@ -284,8 +288,13 @@ class _Director:
         return REPEATED * are_alike(camera, before.camera) + REVERSED * turned
 
     def _across(self, camera: Camera, frame: int) -> float:
-        """How far to the right of a picture the body is turned, -1 to 1."""
-        return float(rotations.rotate(self.turns[frame, 0], np.array([0.0, 0.0, 1.0])) @ camera.axes[0])
+        """How far to the right of a picture the body goes, or is turned if it does not go, -1 to 1."""
+        frames, least = ON_THE_WAY
+        first, last = self.joints[[max(frame - frames, 0), min(frame + frames, len(self.joints) - 1)], 0]
+        way = (last - first) * [1.0, 0.0, 1.0]
+        far = float(np.linalg.norm(way))
+        ahead = rotations.rotate(self.turns[frame, 0], np.array([0.0, 0.0, 1.0])) if far < least else way / far
+        return float(ahead @ camera.axes[0])
 
 
 class _View(NamedTuple):

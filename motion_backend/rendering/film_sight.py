@@ -40,7 +40,7 @@ ENOUGH: Final = 0.96
 """The share of looks in which it is."""
 HALF_HIDDEN: Final = 0.6
 """The same, if that is the price for a face."""
-FACED: Final = {Subject.BODY: 0.15, Subject.FACE: 0.30, Subject.HANDS: 0.05}
+FACED: Final = {Subject.BODY: 0.12, Subject.FACE: 0.30, Subject.HANDS: 0.05}
 """How much of a face is to be seen, as a share of what is seen of it from the front: a profile is 0.4."""
 FRONT: Final = 0.40
 """How far forward the skin of a face looks, at least: the cosine."""
@@ -69,7 +69,7 @@ BEFORE: Final = 0.86
 """Up to which share of the way to the body something is in the foreground,"""
 LOW, TALL = 0.3, 0.8
 """from which height on (metres), and from which wholly: a rug is not, a bed hardly, a wardrobe is."""
-FOREGROUND: Final = 4.0
+FOREGROUND: Final = 8.0
 """What it counts to have nothing but foreground in the picture."""
 RING: Final = (1.15, 2.3)
 """From how many radii of a head on, and up to how many, what is behind it is looked at,"""
@@ -154,7 +154,7 @@ class Appearances:
         hand, doing = _doing(mesh.joints[:, 0], framing, frames)
         return Appearances(
             vertices, normals, areas, part, head, legs, aspect, mesh.faces, framing.subject,
-            head & (mesh.normals[:, 2] > FRONT), _watched(motion, frames), hand, doing, held,
+            head & (mesh.normals[:, 2] > FRONT), _watched(motion, framing, frames), hand, doing, held,
         )  # fmt: skip
 
     @cached_property
@@ -353,13 +353,12 @@ def _worst(hidden: Sequence[float], every: int) -> float:
     return float(np.convolve(hidden, np.full(long, 1.0 / long), "valid").max())
 
 
-def _watched(motion: Motion, frames: NDArray[np.integer]) -> NDArray[np.bool_]:
-    """In which frames nobody walks; in none where that is but a moment. (T,)."""
-    still = ~np.any(
-        [(frames >= p.start) & (frames < p.stop) for p in motion.phases if p.kind is PhaseKind.WALK], axis=0
-    )
-    still = np.broadcast_to(still, frames.shape)
-    return still if still.mean() >= STANDS else np.zeros(len(frames), dtype=bool)
+def _watched(motion: Motion, framing: Framing, frames: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """In which frames nobody walks, or hands do what it is about; in none where that is but a moment. (T,)."""
+    walks = [(frames >= p.start) & (frames < p.stop) for p in motion.phases if p.kind is PhaseKind.WALK]
+    first, stop = framing.deed or (0, 0)
+    watched = ~np.any([np.zeros(len(frames), dtype=bool), *walks], axis=0) | ((frames >= first) & (frames < stop))
+    return watched if watched.mean() >= STANDS else np.zeros(len(frames), dtype=bool)
 
 
 def _doing(
