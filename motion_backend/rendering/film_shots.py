@@ -70,9 +70,9 @@ WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
 """The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
 WATCHED: Final = 3.0
 """What it counts to see the face of who does not walk, in a shot of the whole,"""
-QUARTER, PROFILE = (0.8, 1.6), (1.3, 1.8)
-"""from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, and of who
-does."""
+QUARTER, PROFILE, BEYOND = (0.8, 1.6), (1.3, 1.8), (2.0, 2.5)
+"""from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, of who
+does, and of who does it to what stands before them."""
 HAND_HIDDEN: Final = 2.0
 """What it counts to have furniture before the hands that do something."""
 EVERY: Final = 4
@@ -200,6 +200,7 @@ class _Director:
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         front = self._front(framing, sight)
+        widest = BEYOND if front is not None else PROFILE if framing.deed else QUARTER
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
         scored = []
         for pitch in PITCHES:
@@ -208,7 +209,7 @@ class _Director:
                 score = float(liked[index]) + sight.score(camera, poses)
                 score -= FAR * _distance(camera)
                 if len(watched):
-                    score += WATCHED * _is_faced(ahead, -camera.axes[2], PROFILE if framing.deed else QUARTER)
+                    score += WATCHED * _is_faced(ahead, -camera.axes[2], widest)
                 if front is not None:
                     score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
@@ -275,9 +276,10 @@ class _Director:
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score += TO_FRONT * front.seen(camera) if front is not None else 0.0
+                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), hands).mean())
                     score -= ALONG * max(abs(float(arm @ towards)) for arm in _directions(poses, close.hands))
                 scored.append(_View(score - self._broken(camera, before, close.start), camera))
-        return _sorted(_frontal(scored, front))
+        return _sorted(scored)
 
     def _broken(self, camera: Camera, before: FilmShot | None, frame: int) -> float:
         """What the rules of cutting count against a camera: no jump from nearly the same place, nobody turns round."""

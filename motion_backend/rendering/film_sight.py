@@ -63,13 +63,13 @@ TO_FACE, TO_DEED = 3.0, 2.5
 """What it counts to see all of a face that must be seen, and of the hands that do what is done."""
 VEILED: Final = 3.0
 """What it counts to have all of a body behind things for a second: behind a thin lamp is a fourth of it."""
-VOID: Final = 5.0
+VOID: Final = 8.0
 """What it counts to have nothing but what is outside of a home in the picture."""
 BEFORE: Final = 0.86
 """Up to which share of the way to the body something is in the foreground,"""
 LOW, TALL = 0.3, 0.8
 """from which height on (metres), and from which wholly: a rug is not, a bed hardly, a wardrobe is."""
-FOREGROUND: Final = 8.0
+FOREGROUND: Final = 10.0
 """What it counts to have nothing but foreground in the picture."""
 RING: Final = (1.15, 2.3)
 """From how many radii of a head on, and up to how many, what is behind it is looked at,"""
