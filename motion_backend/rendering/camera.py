@@ -62,7 +62,7 @@ def choose_frames(motion: Motion, joints: NDArray[np.floating], start: int, stop
     if skill is Skill.LOCO:
         return _along_the_way(motion.root_positions, start, stop)
     if skill is Skill.TOUCH:
-        blow = Blow.of(joints, start, stop)
+        blow = Blow.of(np.asarray(joints, dtype=np.float64), start, stop)
         return _at_full_reach(joints, start, stop) if blow is None else _at_height(joints, blow)
     height = joints[start:stop, INDEX["head"], 1]
     left = np.abs(height - np.median(height[-8:]))  # metres the head has yet to go down or up
@@ -158,8 +158,10 @@ class Sight:
     home: Home
     room: int | None
     """That of the place."""
+    pieces: tuple[Placed, ...]
+    """Furniture,"""
     near: Boxes
-    """Furniture."""
+    """and its parts."""
     sides: tuple[Side, ...]
     """Walls."""
 
@@ -168,7 +170,7 @@ class Sight:
         """Around a place [x, z], with the furniture within reach (metres)."""
         near = tuple(o for o in home.objects if np.hypot(o.position[0] - place[0], o.position[2] - place[1]) < reach)
         sides = tuple(side for wall in home.walls if (side := Side.of(wall, home)) is not None)
-        return Sight(home, home.room_at(place), Boxes.of(near), sides)
+        return Sight(home, home.room_at(place), near, Boxes.of(near), sides)
 
     def score(self, camera: Camera, poses: Array) -> float:
         """How well a camera shows poses (P, 22, 3), whichever side of them it sees."""
@@ -191,9 +193,13 @@ class Sight:
         """What a hand (3,) touches, if that stands up before it."""
         here = hand[[0, 2]]
         walls = [(side.distance(here), -np.insert(side.outward, 1, 0.0)) for side in self.sides if side.faces(here)]
-        found = [*self.near.upright(hand), *walls]
-        away, outward = min(found, key=lambda one: one[0], default=(np.inf, None))
-        return None if outward is None or away > NEAR_HAND else Front(hand, outward)
+        tall = [
+            _side_of(one, hand)
+            for one in self.pieces
+            if one.position[1] < hand[1] < one.position[1] + one.size[1] - ABOVE_HAND
+        ]
+        away, outward = min([*tall, *walls], key=lambda one: one[0], default=(np.inf, np.zeros(3)))
+        return Front(hand, outward) if away < NEAR_HAND else None
 
     def blocked(self, camera: Camera) -> bool:
         """Whether the eye is within furniture, or right before some."""
@@ -207,6 +213,15 @@ class Sight:
     def _at_a_window(self, eye: Array) -> bool:
         """Whether it is so near to a wall, on its room's side, that curtains may hang before it."""
         return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in self.sides)
+
+
+def _side_of(placed: Placed, hand: Array) -> tuple[float, Array]:
+    """How far from a hand (3,) the nearest side of a piece of furniture is, and which way that looks. (3,)."""
+    here = placed.to_local(hand) * [1.0, 0.0, 1.0]
+    out = np.abs(here) - np.array([placed.size[0], np.inf, placed.size[2]]) / 2
+    side = np.arange(3) == out.argmax()
+    outward = placed.to_world(side * np.sign(here)) - np.asarray(placed.position)
+    return float(np.linalg.norm(np.maximum(out, 0.0))), outward
 
 
 def liking(motion: Motion, shot: Shot) -> Array:
@@ -248,20 +263,6 @@ class Boxes:
         low = np.array([part.low for _, part in parts]).reshape(-1, 1, 3)
         high = np.array([part.high for _, part in parts]).reshape(-1, 1, 3)
         return Boxes(low, high, np.array([placed.position for placed, _ in parts]).reshape(-1, 3), turn)
-
-    def upright(self, hand: Array) -> list[tuple[float, Array]]:
-        """How far each that goes on above a hand (3,) is from it, and which way its nearest side looks. (3,)."""
-        if not len(self.origin):
-            return []
-        here = np.einsum("bij,bj->bi", self.turn, hand - self.origin)
-        out = np.maximum(self.low[:, 0] - here, here - self.high[:, 0])
-        away = np.linalg.norm(np.maximum(out, 0.0), axis=1)
-        axis = np.where(out[:, 0] > out[:, 2], 0, 2)
-        every = np.arange(len(axis))
-        sign = np.where(here[every, axis] > (self.low[:, 0] + self.high[:, 0])[every, axis] / 2, 1.0, -1.0)
-        outward = self.turn[every, axis] * sign[:, None]
-        tall = (self.high[:, 0, 1] > here[:, 1] + ABOVE_HAND) & (self.low[:, 0, 1] < here[:, 1])
-        return [(float(away[part]), outward[part]) for part in np.flatnonzero(tall)]
 
     def hide(self, eye: Array, points: Array) -> NDArray[np.bool_]:
         """Which points (N, 3) lie behind any of them, seen from an eye. (N,)."""
