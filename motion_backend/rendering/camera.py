@@ -39,8 +39,9 @@ HELD = 0.15
 """And to have what is held on the camera's side of the body."""
 CLOSE = 0.4
 """Metres in front of an eye that are free of furniture."""
-NEAR_HAND, ABOVE_HAND = 0.25, 0.08
-"""Metres from a wrist at most to what it touches, and by which that goes on above it: what a hand lies on does not."""
+NEAR_HAND, IN_IT, ABOVE_HAND = 0.25, 0.08, 0.08
+"""Metres from a wrist at most to the side of what it touches, from before and from within, and by which that goes on
+above it: what a hand lies on or in does not stand before it."""
 FLAT = 0.35
 """The cosine between a front and a look at it up to which it is the better seen, the straighter it is looked at."""
 FRONT = 2.0
@@ -216,12 +217,13 @@ class Sight:
 
 
 def _side_of(placed: Placed, hand: Array) -> tuple[float, Array]:
-    """How far from a hand (3,) the nearest side of a piece of furniture is, and which way that looks. (3,)."""
+    """How far before the nearest side of a piece of furniture a hand (3,) is, infinitely far where it is in it, and
+    which way that side looks. (3,)."""
     here = placed.to_local(hand) * [1.0, 0.0, 1.0]
     out = np.abs(here) - np.array([placed.size[0], np.inf, placed.size[2]]) / 2
     side = np.arange(3) == out.argmax()
     outward = placed.to_world(side * np.sign(here)) - np.asarray(placed.position)
-    return float(np.linalg.norm(np.maximum(out, 0.0))), outward
+    return np.inf if out.max() < -IN_IT else float(np.linalg.norm(np.maximum(out, 0.0))), outward
 
 
 def liking(motion: Motion, shot: Shot) -> Array:

@@ -40,7 +40,7 @@ ENOUGH: Final = 0.96
 """The share of looks in which it is."""
 HALF_HIDDEN: Final = 0.6
 """The same, if that is the price for a face."""
-FACED: Final = {Subject.BODY: 0.12, Subject.FACE: 0.30, Subject.HANDS: 0.05}
+FACED: Final = {Subject.BODY: 0.12, Subject.FACE: 0.30, Subject.HANDS: 0.12}
 """How much of a face is to be seen, as a share of what is seen of it from the front: a profile is 0.4."""
 FRONT: Final = 0.40
 """How far forward the skin of a face looks, at least: the cosine."""

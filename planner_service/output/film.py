@@ -121,8 +121,8 @@ def film_plan(filmed: Filmed, size: tuple[int, int] = SIZE) -> FilmPlan:
         across, bottom = place.across, place.box((title.shape[0], title.shape[1]), size)[3] / size[1]
     words = [(line, WORDS_END, lettered(line.lines, size, TEXT_HEIGHT)) for line in filmed.words]
     legend = [(letter, slanted) for part, slanted in zip(LEGEND, (True, False), strict=True) for letter in part]
-    for line in [line for line in filmed.words if line.slanted][:1]:
-        words.append((line, LEGEND_ENDS, lettered([legend], size, LEGEND_HEIGHT)))
+    first = [line for line in filmed.words if line.slanted][:1]
+    words += [(line, LEGEND_ENDS, lettered([legend], size, LEGEND_HEIGHT)) for line in first]
 
     def dressed(frame: int, picture: Planes) -> Planes:
         for line, end, letters in words:
