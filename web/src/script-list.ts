@@ -4,11 +4,13 @@ import type { Keyframe } from "./api";
 import { h } from "./dom";
 import { placeWords } from "./furniture-words";
 import { badge, type Outcome } from "./outcomes";
+import { Reading } from "./reading";
 import { clock } from "./timing";
 import { SKILL_WORDS } from "./words";
 
 export class ScriptList {
   readonly element = h("ol", { class: "cues" });
+  readonly #reading = new Reading(this.element);
   readonly #seek: (keyframe: number) => void;
   #rows: { item: HTMLElement; button: HTMLButtonElement; words: HTMLElement; time: HTMLElement }[] = [];
   #current: number | null = null;
@@ -55,6 +57,8 @@ export class ScriptList {
     if (keyframe === this.#current) return;
     this.#rows[this.#current ?? -1]?.button.removeAttribute("aria-current");
     this.#current = keyframe;
-    this.#rows[keyframe ?? -1]?.button.setAttribute("aria-current", "true");
+    const row = this.#rows[keyframe ?? -1];
+    row?.button.setAttribute("aria-current", "true");
+    if (row) this.#reading.reveal(row.item);
   }
 }

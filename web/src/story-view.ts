@@ -1,6 +1,7 @@
 /** One story on the page: film, text, script, report; kept up to date while it is being made. */
 
 import { ApiError, cancelStory, deleteStory, getStory, type Story } from "./api";
+import { isStill } from "./appearance";
 import { fill, h } from "./dom";
 import { showDownloads } from "./downloads";
 import { follow } from "./events";
@@ -8,14 +9,18 @@ import { Film } from "./film";
 import { confirmRemoval } from "./gallery";
 import { announce } from "./live";
 import { showMaking } from "./making";
+import { NextSteps } from "./next-steps";
+import { showOrigin } from "./origin";
 import { marks } from "./outcomes";
 import { showReport } from "./report";
 import { ScriptList } from "./script-list";
 import { Steps } from "./steps";
 import { Telling } from "./telling";
-import { capital, count, takeWords } from "./words";
+import { capital, count } from "./words";
 
 const AGAIN_MS = 2500;
+/** Letters of a theme that may be more than the heading has lines for: then it can be scrolled, by keys too. */
+const LONG_THEME = 120;
 
 export class StoryView {
   readonly element = h("article", { class: "story" });
@@ -29,13 +34,16 @@ export class StoryView {
   readonly #script: ScriptList;
   readonly #title = h("h1", {}, "…");
   readonly #theme = h("p", { class: "theme" });
-  readonly #origin = h("p", { class: "origin", hidden: true });
-  readonly #change = h("button", { type: "button", class: "plain small", hidden: true, onclick: () => void this.#edit() }, "Change the script");
-  readonly #book = h("section", { class: "book", "aria-label": "The told story" });
+  readonly #derived = h("p", { class: "origin", hidden: true });
+  readonly #next = new NextSteps(() => void this.#edit(), () => this.#toFiles());
+  readonly #book = h("section", { class: "book", "aria-label": "The story and its script" });
   readonly #foot = h("div", { class: "row foot" });
   readonly #sections: { readonly script: HTMLElement; readonly report: HTMLElement; readonly making: HTMLElement; readonly files: HTMLElement };
   readonly #left: () => void;
   #story: Story | null = null;
+  /** What it is a take of, once that is fetched. */
+  #origin: Story | null = null;
+  #originAsked = false;
   #unfollow: (() => void) | null = null;
   #fetching = false;
   #again = false;
@@ -66,15 +74,15 @@ export class StoryView {
     }
     const section = (name: string): HTMLElement => h("section", { class: name, hidden: true });
     this.#sections = { script: section("script"), report: section("report"), making: section("making"), files: section("downloads") };
-    fill(this.#sections.script, h("div", { class: "row spread" }, h("h2", {}, "The script"), this.#change), this.#script.element);
-    fill(this.#book, this.#telling.element);
+    fill(this.#sections.script, h("h2", {}, "The script"), this.#script.element);
+    this.#read();
     fill(
       this.element,
-      h("header", { class: "title" }, this.#title, this.#theme, this.#origin),
+      h("header", { class: "title" }, this.#title, this.#theme, this.#derived),
       this.#steps.element,
       this.film.element,
-      this.#book,
-      h("div", { class: "backstage" }, this.#sections.script, h("div", { class: "column" }, this.#sections.report, this.#sections.files, this.#foot), this.#sections.making),
+      h("div", { class: "beside" }, this.#next.element, this.#book),
+      h("div", { class: "backstage" }, this.#sections.report, this.#sections.making, h("div", { class: "column" }, this.#sections.files, this.#foot)),
     );
     void this.refresh();
   }
@@ -115,46 +123,63 @@ export class StoryView {
     const making = story.state === "queued" || story.state === "running";
     this.#title.textContent = story.title ?? (story.kind === "motion" ? "A motion" : making ? "Being written …" : "No story this time");
     this.#theme.textContent = story.theme ?? "";
+    if ((story.theme?.length ?? 0) > LONG_THEME) this.#theme.tabIndex = 0;
     document.title = `${story.title ?? "A story"} · SIMS stories`;
     this.element.classList.toggle("without-text", !story.text && !making);
+    this.element.classList.toggle("alone", !story.text && !story.keyframes.length && !making);
     this.#steps.update(story);
     this.#telling.update(story);
     this.#script.update(story.keyframes, story.motion.fps, before !== null, marks(story));
     this.film.update(story);
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
-    this.#showOrigin(story);
+    void this.#showOrigin(story);
     this.#sections.script.hidden = story.keyframes.length === 0;
-    this.#change.hidden = !story.home;
+    this.#next.change.hidden = !story.home;
     if (this.#goesOn && story.home && !making) void this.#edit(false);
     if (!making || before?.stage !== story.stage) {
       this.#sections.report.hidden = !showReport(this.#sections.report, story, seek);
       this.#sections.making.hidden = !showMaking(this.#sections.making, story);
-      this.#sections.files.hidden = making || !showDownloads(this.#sections.files, story);
+      this.#next.files.hidden = this.#sections.files.hidden = making || !showDownloads(this.#sections.files, story);
     }
     if (making && !this.#unfollow) this.#follow();
     if (!making) this.#close(story, before);
   }
 
-  /** What a take derives from, and what of it is the same. */
-  #showOrigin(story: Story): void {
-    this.#origin.hidden = !story.derived_from;
-    if (!story.derived_from) return;
-    const same = story.reused ? `; its first ${count(story.reused, "moment")} ${story.reused === 1 ? "is" : "are"} the same` : "";
-    fill(this.#origin, `${takeWords(story)}, made from `, h("a", { href: `#/stories/${story.derived_from}` }, "the one before"), `${same}. `, h("a", { href: `#/stories/${story.id}?beside=${story.derived_from}` }, "See both side by side"));
+  /** What a take derives from, and what of it is another. */
+  async #showOrigin(story: Story): Promise<void> {
+    showOrigin(this.#derived, story, this.#origin);
+    if (!story.derived_from || this.#originAsked) return;
+    this.#originAsked = true;
+    try {
+      this.#origin = await getStory(story.derived_from);
+    } catch {
+      return; // It is no more, or nobody answers: the line says what is known without it.
+    }
+    if (this.#story) showOrigin(this.#derived, this.#story, this.#origin);
+  }
+
+  /** The told story and its script beside the film. */
+  #read(): void {
+    fill(this.#book, this.#telling.element, this.#sections.script);
+  }
+
+  #toFiles(): void {
+    this.#sections.files.scrollIntoView({ block: "start", behavior: isStill() ? "auto" : "smooth" });
+    this.#sections.files.querySelector<HTMLElement>("button, a")?.focus({ preventScroll: true });
   }
 
   /** Beside the film the script can be changed; its code is fetched when it is first asked for. */
   async #edit(asked = true): Promise<void> {
     if (!this.#story) return;
     this.#goesOn = false;
-    this.#change.disabled = true;
+    this.#next.change.disabled = true;
     try {
       const { ScriptEditor } = await import("./script-editor");
       const close = (): void => {
         this.element.classList.remove("editing");
-        fill(this.#book, this.#telling.element);
-        this.#change.disabled = false;
-        this.#change.focus();
+        this.#read();
+        this.#next.change.disabled = false;
+        this.#next.change.focus();
       };
       const editor = await ScriptEditor.open(this.#story, (take, from, elsewhere) => this.#goOn(take.id, from, elsewhere), close);
       if (!this.#live) return;
@@ -165,7 +190,7 @@ export class StoryView {
       this.element.scrollIntoView({ block: "start" });
       editor.focus();
     } catch (error) {
-      this.#change.disabled = false;
+      this.#next.change.disabled = false;
       announce(error instanceof Error ? error.message : String(error));
     }
   }

@@ -1,0 +1,45 @@
+/** What a take was made from, what was changed for it, and from where on it is acted again. */
+
+import type { Story } from "./api";
+import { align, differences } from "./differences";
+import { fill, h } from "./dom";
+import { takeWords } from "./words";
+
+/** "moment 6 (how, mood), seed": all that was changed. */
+export function changeWords(origin: Story, take: Story): string {
+  const named = new Map<string, string[]>();
+  for (const [head] of differences(origin, take)) {
+    const [what = head, of] = head.split(", ");
+    named.set(what, [...(named.get(what) ?? []), ...(of ? [of] : [])]);
+  }
+  return [...named].map(([what, of]) => `${what.charAt(0).toLowerCase()}${what.slice(1)}${of.length ? ` (${of.join(", ")})` : ""}`).join(", ");
+}
+
+/**
+ * From where on the body moves anew: `reused` moments are kept, frame for frame. The one before the first change is acted
+ * again too, since its ending leads to what follows. Null while it is not known.
+ */
+export function againWords({ reused, take, keyframes }: Story, origin: Story | null): string | null {
+  if (!take || !keyframes.length) return null;
+  if (reused >= keyframes.length) return "Nothing had to be acted again.";
+  if (!reused) return "All of it is acted again.";
+  const first = origin && align(origin.keyframes, keyframes).find(({ same }) => !same)?.other;
+  const leads = typeof first === "number" && first > reused ? `, which now leads to moment ${first + 1}` : "";
+  return `Acted again from moment ${reused + 1} on${leads}; before it, the film is the same.`;
+}
+
+/** Fill a line with it; `origin` is null while it is not there, or no more. */
+export function showOrigin(line: HTMLElement, take: Story, origin: Story | null): void {
+  line.hidden = !take.derived_from;
+  if (!take.derived_from) return;
+  const changed = origin && take.keyframes.length ? changeWords(origin, take) : "";
+  const again = againWords(take, origin);
+  fill(
+    line,
+    `${takeWords(take)}, made from `,
+    h("a", { href: `#/stories/${take.derived_from}` }, "the one before"),
+    changed ? `; changed: ${changed}. ` : ". ",
+    again ? `${again} ` : null,
+    h("a", { href: `#/stories/${take.id}?beside=${take.derived_from}` }, "See both side by side"),
+  );
+}
