@@ -1,18 +1,19 @@
 /** What a take was made from, what was changed for it, and from where on it is acted again. */
 
 import type { Story } from "./api";
-import { align, differences } from "./differences";
+import { align, differences, NOT_IN_IT } from "./differences";
 import { fill, h } from "./dom";
 import { takeWords } from "./words";
 
-/** "moment 6 (how, mood), seed": all that was changed. */
+/** "seed, moment 6 (how, mood)": all that was changed. */
 export function changeWords(origin: Story, take: Story): string {
   const named = new Map<string, string[]>();
-  for (const [head] of differences(origin, take)) {
-    const [what = head, of] = head.split(", ");
-    named.set(what, [...(named.get(what) ?? []), ...(of ? [of] : [])]);
+  for (const [head, before, now] of differences(origin, take)) {
+    const [what = head, field] = head.split(", ");
+    const how = field ?? (before === NOT_IN_IT ? "new" : now === NOT_IN_IT ? "left out" : "");
+    named.set(what, [...(named.get(what) ?? []), ...(how ? [how] : [])]);
   }
-  return [...named].map(([what, of]) => `${what.charAt(0).toLowerCase()}${what.slice(1)}${of.length ? ` (${of.join(", ")})` : ""}`).join(", ");
+  return [...named].map(([what, how]) => `${what.charAt(0).toLowerCase()}${what.slice(1)}${how.length ? ` (${how.join(", ")})` : ""}`).join(", ");
 }
 
 /**
