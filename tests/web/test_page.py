@@ -206,7 +206,7 @@ def test_how_one_sits_is_changed_beside_the_film_and_seen(
     assert take["derived_from"] == story["id"]
     assert take["reused"] == at - 1, "all before the walk to the seat is the old story's"
     assert f"changed: moment {at + 1} (how)" in changed["origin"]
-    assert f"Acted again from moment {at} on, which now leads to moment {at + 1}" in changed["origin"]
+    assert f"Acted again from moment {at} on, so that it leads to what follows now" in changed["origin"]
     assert changed["keyframe"] == at, "it plays from the first change"
     assert [one["caption"] for one in take["keyframes"]] == [
         changed["caption"] if one["index"] == at else one["caption"] for one in story["keyframes"]

@@ -61,7 +61,7 @@ export function firstApart(pairs: readonly Pair[]): number {
 export function differences(one: Story, other: Story): Difference[] {
   const of = (what: string, read: (story: Story) => string): Difference[] => (read(one) === read(other) ? [] : [[what, read(one), read(other)]]);
   return [
-    ...of("Moved by", moverOf),
+    ...(one.backend === other.backend ? [] : of("Moved by", moverOf)),
     ...of("Seed", ({ seed }) => String(seed)),
     ...of("Played by", ({ character }) => `${character.name}, ${character.member || character.age}, ${character.height.toFixed(2)} m, ${character.outfit}`),
     ...of("Played in", ({ home }) => home?.rooms.map(({ layout_id }) => layout_id).join(", ") ?? "…"),

@@ -17,15 +17,16 @@ export function changeWords(origin: Story, take: Story): string {
 }
 
 /**
- * From where on the body moves anew: `reused` moments are kept, frame for frame. The one before the first change is acted
- * again too, since its ending leads to what follows. Null while it is not known.
+ * From where on the body moves anew: `reused` moments are kept, frame for frame. What comes right before the first change is
+ * acted again too, since its ending leads to what follows. Null while it is not known.
  */
 export function againWords({ reused, take, keyframes }: Story, origin: Story | null): string | null {
   if (!take || !keyframes.length) return null;
   if (reused >= keyframes.length) return "Nothing had to be acted again.";
   if (!reused) return "All of it is acted again.";
-  const first = origin && align(origin.keyframes, keyframes).find(({ same }) => !same)?.other;
-  const leads = typeof first === "number" && first > reused ? `, which now leads to moment ${first + 1}` : "";
+  // All pairs before the first that differs are in both.
+  const first = origin ? align(origin.keyframes, keyframes).findIndex(({ same }) => !same) : -1;
+  const leads = first > reused ? ", so that it leads to what follows now" : "";
   return `Acted again from moment ${reused + 1} on${leads}; before it, the film is the same.`;
 }
 

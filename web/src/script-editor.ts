@@ -80,7 +80,7 @@ export class ScriptEditor {
   }
 
   focus(): void {
-    this.#list.querySelector("select")?.focus();
+    this.#list.querySelector("select")?.focus({ preventScroll: true });
   }
 
   /** Offer the rooms there are. */
@@ -289,6 +289,8 @@ export class ScriptEditor {
       this.#problem.textContent = left.length ? left.map(capital).join(". ") : capital(error.detail || error.title);
     }
     first?.focus();
+    // What is wrong stands under the field, where a long script may have its edge.
+    first?.closest("li")?.scrollIntoView({ block: "nearest" });
     announce(error.detail);
   }
 }

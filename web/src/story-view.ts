@@ -19,6 +19,8 @@ import { Telling } from "./telling";
 import { capital, count } from "./words";
 
 const AGAIN_MS = 2500;
+/** Where the script stands beside the film, as in story.css. */
+const WIDE = window.matchMedia("(min-width: 70rem)");
 /** Letters of a theme that may be more than the heading has lines for: then it can be scrolled, by keys too. */
 const LONG_THEME = 120;
 
@@ -78,10 +80,10 @@ export class StoryView {
     this.#read();
     fill(
       this.element,
-      h("header", { class: "title" }, this.#title, this.#theme, this.#derived),
+      h("header", { class: "title" }, this.#title, this.#theme),
       this.#steps.element,
       this.film.element,
-      h("div", { class: "beside" }, this.#next.element, this.#book),
+      h("div", { class: "beside" }, this.#next.element, this.#derived, this.#book),
       h("div", { class: "backstage" }, this.#sections.report, this.#sections.making, h("div", { class: "column" }, this.#sections.files, this.#foot)),
     );
     void this.refresh();
@@ -187,7 +189,7 @@ export class StoryView {
       fill(this.#book, editor.element);
       if (!asked) return;
       this.film.player.pause();
-      this.element.scrollIntoView({ block: "start" });
+      (WIDE.matches ? this.element : this.#book).scrollIntoView({ block: "start" });
       editor.focus();
     } catch (error) {
       this.#next.change.disabled = false;
