@@ -5,15 +5,22 @@ import { align, differences, NOT_IN_IT } from "./differences";
 import { fill, h } from "./dom";
 import { takeWords } from "./words";
 
-/** "seed, moment 6 (how, mood)": all that was changed. */
+/** What is said of a story as a whole, where it differs. */
+const WHOLE: Readonly<Record<string, string>> = { "Moved by": "what moves the body", Seed: "the seed", "Played by": "who plays", "Played in": "the home" };
+
+/** "the seed, moment 6 (how, mood)": all that was changed. */
 export function changeWords(origin: Story, take: Story): string {
   const named = new Map<string, string[]>();
-  for (const [head, before, now] of differences(origin, take)) {
+  const found = differences(origin, take);
+  const elsewhere = found.some(([head]) => head === "Played in");
+  for (const [head, before, now] of found) {
+    // In another home all furniture is another.
+    if (elsewhere && head.endsWith(", where")) continue;
     const [what = head, field] = head.split(", ");
     const how = field ?? (before === NOT_IN_IT ? "new" : now === NOT_IN_IT ? "left out" : "");
     named.set(what, [...(named.get(what) ?? []), ...(how ? [how] : [])]);
   }
-  return [...named].map(([what, how]) => `${what.charAt(0).toLowerCase()}${what.slice(1)}${how.length ? ` (${how.join(", ")})` : ""}`).join(", ");
+  return [...named].map(([what, how]) => `${WHOLE[what] ?? what.toLowerCase()}${how.length ? ` (${how.join(", ")})` : ""}`).join(", ");
 }
 
 /**

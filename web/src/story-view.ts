@@ -21,8 +21,6 @@ import { capital, count } from "./words";
 const AGAIN_MS = 2500;
 /** Where the script stands beside the film, as in story.css. */
 const WIDE = window.matchMedia("(min-width: 70rem)");
-/** Letters of a theme that may be more than the heading has lines for: then it can be scrolled, by keys too. */
-const LONG_THEME = 120;
 
 export class StoryView {
   readonly element = h("article", { class: "story" });
@@ -42,6 +40,12 @@ export class StoryView {
   readonly #foot = h("div", { class: "row foot" });
   readonly #sections: { readonly script: HTMLElement; readonly report: HTMLElement; readonly making: HTMLElement; readonly files: HTMLElement };
   readonly #left: () => void;
+  /** A theme that is longer than the heading has lines for is seen to go on, and can be scrolled by keys too. */
+  readonly #lines = new ResizeObserver(() => {
+    const cut = this.#theme.scrollHeight > this.#theme.clientHeight + 1;
+    this.#theme.classList.toggle("cut", cut);
+    this.#theme.tabIndex = cut ? 0 : -1;
+  });
   #story: Story | null = null;
   /** What it is a take of, once that is fetched. */
   #origin: Story | null = null;
@@ -86,6 +90,7 @@ export class StoryView {
       h("div", { class: "beside" }, this.#next.element, this.#derived, this.#book),
       h("div", { class: "backstage" }, this.#sections.report, this.#sections.making, h("div", { class: "column" }, this.#sections.files, this.#foot)),
     );
+    this.#lines.observe(this.#theme);
     void this.refresh();
   }
 
@@ -115,6 +120,7 @@ export class StoryView {
   dispose(): void {
     this.#live = false;
     this.#unfollow?.();
+    this.#lines.disconnect();
     if (!this.#handed) this.film.dispose();
   }
 
@@ -125,7 +131,6 @@ export class StoryView {
     const making = story.state === "queued" || story.state === "running";
     this.#title.textContent = story.title ?? (story.kind === "motion" ? "A motion" : making ? "Being written …" : "No story this time");
     this.#theme.textContent = story.theme ?? "";
-    if ((story.theme?.length ?? 0) > LONG_THEME) this.#theme.tabIndex = 0;
     document.title = `${story.title ?? "A story"} · SIMS stories`;
     this.element.classList.toggle("without-text", !story.text && !making);
     this.element.classList.toggle("alone", !story.text && !story.keyframes.length && !making);
@@ -248,8 +253,10 @@ export class StoryView {
       window.setTimeout(() => this.#live && void this.refresh(), AGAIN_MS);
       return;
     }
-    this.#title.textContent = error.status === 404 ? "No such story" : error.title;
-    this.film.notice(h("div", { class: "outcome" }, h("p", {}, error.detail)), h("a", { href: "#/", class: "button primary" }, "To the stories there are"));
+    const gone = error.status === 404;
+    this.element.classList.add("alone");
+    this.#title.textContent = gone ? "No such story" : error.title;
+    this.film.notice(h("div", { class: "outcome" }, h("p", {}, gone ? "It was removed, or the link to it is not whole." : error.detail)), h("a", { href: "#/", class: "button primary" }, "To the stories there are"));
   }
 
   async #cancel(): Promise<void> {

@@ -11,7 +11,9 @@ const BEFORE = story({});
 
 test("all that was changed is named, moment by moment", () => {
   const take = story({ take: 1, seed: 4, keyframes: script("a", "b", "c", "d", "e", "x", "g").map((one, index) => (index === 5 ? { ...one, emotion: "sad" } : one)) });
-  expect(changeWords(BEFORE, take)).toBe("seed, moment 6 (how, mood)");
+  expect(changeWords(BEFORE, take)).toBe("the seed, moment 6 (how, mood)");
+  const home = (layout_id: string): Story["home"] => ({ rooms: [{ layout_id }] }) as unknown as Story["home"];
+  expect(changeWords(story({ home: home("study-0001") }), story({ take: 1, home: home("bedroom-0002"), keyframes: BEFORE.keyframes.map((one) => ({ ...one, furniture: "bed" })) }))).toBe("the home");
   expect(changeWords(BEFORE, story({ take: 1, keyframes: script("a", "b", "c", "d", "e", "f") }))).toBe("moment 7 (left out)");
   expect(changeWords(BEFORE, story({ take: 1, keyframes: script("a", "z", "b", "c", "d", "e", "f", "g") }))).toBe("moment 2 (new)");
   expect(changeWords(BEFORE, BEFORE)).toBe("");
