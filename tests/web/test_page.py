@@ -186,6 +186,7 @@ def test_words_that_are_told_and_not_acted_can_be_read(watched: dict[str, Any], 
         words(text[one["start"] : one["end"]]) for one in story["thoughts"]
     ]
     assert watched["unseen"], "the theme has something that is only told"
+    assert words(watched["note"]) == "Slanted words are told and not seen: the film does not show them."
     for one in watched["unseen"]:
         # Blanks at which a line breaks have no width.
         assert one["box"] > 0.9 * one["letters"] > 0, one
@@ -268,6 +269,13 @@ def test_it_is_fine_on_every_screen_by_day_and_by_night_and_for_those_who_want_i
     assert still["time"] == still["early"]
     assert still["camera"]["mode"] == "orbit"
     assert still["running"] == 0, "nothing moves that was not asked to"
+
+
+def test_what_one_does_next_is_seen_beside_the_film_without_scrolling(looked: dict[str, Any]) -> None:
+    for seen in looked["next"]:
+        assert seen["named"][:2] == ["Change the script", "Download"], seen
+        assert max(seen["bottom"], seen["film"]) <= seen["height"], seen
+        assert seen["rows"] >= 3 or seen["width"] < 600, "the script stands there too"
 
 
 def test_the_script_is_changed_in_sight_of_what_belongs_together(looked: dict[str, Any]) -> None:
