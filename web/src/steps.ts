@@ -8,7 +8,7 @@ import { capital, STAGE_SHORT, STAGE_WORDS, STAGES } from "./words";
 /** Milliseconds of waiting after which it is said why it may take long. */
 const LONG_WAIT_MS = 6000;
 const WAITING = "waiting for a free worker";
-const STARTING = `${WAITING}; just started, one gets ready first, for up to a minute`;
+const STARTING = "waiting; a worker needs up to a minute to start";
 
 export class Steps {
   readonly element = h("div", { class: "steps", hidden: true });
