@@ -96,10 +96,10 @@ def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() ->
     assert acted_beats([Beat(text="walks to the window")], [walk]).acted == 1
 
 
-def test_what_the_body_did_otherwise_only_stands_for_its_beat() -> None:
+def test_what_the_body_did_otherwise_only_stands_for_its_beat_and_says_why() -> None:
     other = ("nothing to lean back against: upright",)
     found = acted_beats([READS], [shot(0, True, otherwise=other)])
-    assert (found.acted, found.stood_for, found.outcomes[0].why) == (0, 1, IN_ITS_PLACE)
+    assert (found.acted, found.stood_for, found.outcomes[0].why) == (0, 1, f"{IN_ITS_PLACE}, {other[0]}")
     for more in (shot(0, True), shot(0, True, otherwise=())):
         found = acted_beats([READS], [shot(0, True, connects=True, otherwise=other), more])
         assert (found.acted, found.stood_for) == (1, 0)
