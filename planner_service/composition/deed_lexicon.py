@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import Final
 
 from motion_backend.motion import Skill
@@ -62,6 +62,12 @@ _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
 _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
+_GONE: Final = re.compile(
+    r"^(?:\w+ )?(?:out (?:of |through )?the (?:\w+ )?(?:door|house|flat)|off to (?:the )?\w+|back (?:for|to|into) the \w+"
+    r"|back home|home again|(?:in|on)?to the (?:kitchen|bedroom|living room|bathroom|study|hall|door|window))$",
+    re.IGNORECASE,
+)
+"""Words without a verb that tell of a way: "Out the door.", "Back for the keys." """
 _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
 _PUT_VERBS: Final = ("put", "take", "turn", "lay")
@@ -353,6 +359,8 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
     alone = clause.joint in ("", "then", ",") and 0 < len(told) <= _MAX_FRAGMENT and words[0] not in _NOT_NOW
+    if alone and _GONE.search(clause.text):
+        return deed_of(replace(clause, verb="go", lemmas=("go", *map(lemma_of, words))))
     if not alone or told[0] in ("out", "away"):
         return None
     for light in _PUT_VERBS if len(told) > 1 and told[-1] in _PUT else ():  # "kettle on, shoes off, feet up"
@@ -382,7 +390,8 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
 
 def _named(clause: Clause, about: str) -> list[str]:
     """Furniture that a clause names, or means by "it" and "there"."""
-    meant = _IT & set(clause.lemmas[1:]) or _INSIDE.search(clause.text)
+    counts = any(word == "one" and is_noun(after) for word, after in pairwise(clause.lemmas))  # "on one leg"
+    meant = (_IT & set(clause.lemmas[1:])) - ({"one"} if counts else set()) or _INSIDE.search(clause.text)
     return pieces_in(clause.text) or (pieces_in(about)[-1:] if meant else [])
 
 
@@ -486,7 +495,9 @@ def _says_how(clause: Clause) -> bool:
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:
     """Where the first thing is that a clause names after its verb, or means by "it"."""
     places = things()
-    found = next((places[word] for word in clause.lemmas[1:] if word in places), ())
+    first = next((at for at, word in enumerate(clause.lemmas) if at and word in places), 0)
+    run = takewhile(places.__contains__, clause.lemmas[first:]) if first else ()
+    found = next((places[word] for word in reversed([*run])), ())  # "the photo | album"
     if found or not _IT & set(clause.lemmas[1:]):
         return found
     return next((places[word] for word in reversed(_lemmas(about)) if word in places), ())

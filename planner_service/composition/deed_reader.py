@@ -404,7 +404,8 @@ def _is_plain(deed: Deed, clause: Clause) -> bool:
     coming in, and getting up from what is named."""
     opens = bool(deed.row.captions) and opening_of(deed.skill, clause.text) is not None
     comes = deed.skill is Skill.LOCO and comes_in(clause.text)
-    return opens or comes or (deed.named and deed.skill in RISINGS)
+    goes = not clause.verb and deed.skill is Skill.LOCO  # "Out the door."
+    return opens or comes or goes or (deed.named and deed.skill in RISINGS)
 
 
 def _is_surer(deed: Deed, likely: Likely, clause: Clause) -> bool:

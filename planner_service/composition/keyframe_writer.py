@@ -378,7 +378,8 @@ class KeyframeWriter:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
         begins = not self.keyframes and skill is Skill.LIEDOWN and not GETS_THERE.search(read.text)
         if self._add(index, read, deed, mood, skill, shown):
-            if begins and self._rises:  # who "cannot sleep. He gets up" lies there when the story begins
+            stays = read.clause.verb in ("stay", "remain")
+            if begins and (self._rises or stays):  # who "cannot sleep. He gets up" lies there when the story begins
                 self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
             self.body.resting, self.body.plain = self.keyframes[-1], not (deed.row.rests or captions)
             tables = [
@@ -544,7 +545,9 @@ class KeyframeWriter:
         """The keyframes of a part of a script, without a walk to where one is."""
         self.parts.append((index, part))
         *leading, done = part.keyframes
-        if self.body.stays(done, room):
+        resting = self.body.resting
+        goes_on = resting is not None and resting.furniture == done.furniture and done.skill is not Skill.TOUCH
+        if goes_on or self.body.stays(done, room):  # who drinks in bed lies back there
             leading, room = [], self.keyframes[-1].room
         elif leading and self.body.is_there(leading[0].furniture, room):
             leading = []
