@@ -333,6 +333,18 @@ def object_of(clause: Clause) -> str:
     return next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
 
 
+def thing_of(clause: Clause) -> str:
+    """The last of the nouns that name what a clause's deed is done to: of "the photo album" the album."""
+    noun = object_of(clause)
+    at = clause.lemmas.index(noun, 1) if noun else 0
+    others = grammar().adverbs | grammar().prepositions | grammar().marks
+    for after in clause.lemmas[at + 1 :] if noun else ():
+        if after in others or not is_noun(after):
+            break
+        noun = after
+    return noun
+
+
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
@@ -360,7 +372,7 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
     alone = clause.joint in ("", "then", ",") and 0 < len(told) <= _MAX_FRAGMENT and words[0] not in _NOT_NOW
     if alone and _GONE.search(clause.text):
-        return deed_of(replace(clause, verb="go", lemmas=("go", *map(lemma_of, words))))
+        return deed_of(replace(clause, verb="walk", lemmas=("walk", *map(lemma_of, words))))
     if not alone or told[0] in ("out", "away"):
         return None
     for light in _PUT_VERBS if len(told) > 1 and told[-1] in _PUT else ():  # "kettle on, shoes off, feet up"
@@ -506,7 +518,9 @@ def _kept(clause: Clause, about: str) -> tuple[str, ...]:
 def is_another(clause: Clause, piece: str) -> bool:
     """Whether a piece is itself a thing, a lamp or a picture, and no place for the other thing that hands do a deed to:
     nobody lights a candle at a lamp."""
-    kept = things().get(object_of(clause)) if _PICTURES.isdisjoint(clause.lemmas) else None
+    thing, first = thing_of(clause), object_of(clause)
+    shown = _PICTURES.isdisjoint(lemma for lemma in clause.lemmas if lemma in (thing, "wall") or lemma != first)
+    kept = things().get(thing) if shown else None
     alone = furniture.class_of(piece) == "light" or furniture.canonical(piece) in _ALONE
     return kept is not None and piece not in kept and alone
 
@@ -578,7 +592,9 @@ def pieces_told(text: str) -> list[tuple[str, str]]:
         ):
             name = " ".join(words[at : at + size])
             piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
-            found.append((name, deed_table().stands_on.get(piece, piece)))
+            after = lemma_of("".join(words[at + size : at + size + 1]))
+            if piece != "picture" or after not in things_called("book"):  # "the photo album"
+                found.append((name, deed_table().stands_on.get(piece, piece)))
         at += size or 1
     return found
 

@@ -287,7 +287,7 @@ class DeedReader:
             return by_table
         if by_table and deed.skill is Skill.TOUCH and opening_of(deed.skill, clause.text):
             return True  # a hand at the door opens it, whatever else may show it
-        if deed.skill is Skill.LOCO and clause.lemmas == ("leave",):
+        if deed.skill is Skill.LOCO and (clause.lemmas == ("leave",) or not (clause.verb or deed.row.captions)):
             return all(one.skill is Skill.LOCO for one in keyframes)  # seen walking, however they walk
         rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
         if by_table and rests and (RESTS.match(clause.text) or (deed.named and clause.verb in _RESTING)):

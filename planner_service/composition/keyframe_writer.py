@@ -205,7 +205,7 @@ class KeyframeWriter:
             return None
         if again or (_GOES_ON.match(clause.text) and self.deeds):
             done = list(self.deeds.values())
-            return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
+            return self._tried or next((deed for deed in reversed(done[again:-1] or done) if deed.row.rests), done[0])
         return self.reader.deed(clause, self._about)
 
     def _within(self, read: ReadBeat) -> DeedRow | None:
@@ -274,6 +274,8 @@ class KeyframeWriter:
             mood = Emotion(deed.row.mood)
         if self._needs_nothing(index, read, deed):
             return
+        if not self.keyframes and sits_up(read, deed) and "bed" in deed.pieces:
+            self._begin(index, replace(deed, skill=Skill.GETUP), mood)
         resting = self.body.resting
         match deed.skill:
             case Skill.LOCO if resting is not None and read.text in _STANDS:

@@ -318,6 +318,8 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             continue
         elif mood is Emotion.HAPPY and one.clause.verb in _CRIES and one.clause.lemmas[1:2] != ("at",):
             one = one.in_mood(mood)  # who has won screams for joy
+        elif one.felt is Emotion.TIRED and one.beat.kind == "other" and not is_person(one.beat.who):
+            pass  # the shelf collapses
         elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
                 mood = one.felt
