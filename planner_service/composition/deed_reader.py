@@ -217,9 +217,9 @@ class DeedReader:
         return replace(found, pieces=tuple(sorted(bearing, key=lambda one: -at(likely, one) if likely else 0)))
 
     def _deed(self, clause: Clause, about: str) -> Deed | None:
-        if "asleep" in clause.lemmas and lemma_of(head_of(clause.subject)) in theme_words()["body"]:
-            return None  # "her leg falls asleep"
         told, likely, never = deed_of(clause, about), self.likely(clause), self._never(clause)
+        if (told is None or "asleep" in clause.lemmas) and lemma_of(head_of(clause.subject)) in theme_words()["body"]:
+            return None  # "her leg falls asleep", "until her eyes close"
         if told is not None and never:
             told = _without(told, never)
             if (told is None or told.row.captions) and self._misled(clause):
@@ -404,7 +404,7 @@ def _is_plain(deed: Deed, clause: Clause) -> bool:
     coming in, and getting up from what is named."""
     opens = bool(deed.row.captions) and opening_of(deed.skill, clause.text) is not None
     comes = deed.skill is Skill.LOCO and comes_in(clause.text)
-    goes = not clause.verb and deed.skill is Skill.LOCO  # "Out the door."
+    goes = deed.skill is Skill.LOCO and (not clause.verb or clause.lemmas == ("leave",))  # "Out the door."
     return opens or comes or goes or (deed.named and deed.skill in RISINGS)
 
 

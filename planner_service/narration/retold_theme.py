@@ -165,8 +165,8 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
     if word == "mean" and before in _PLURAL and follows == "to":
         return "meant"
-    form, no_deed = form_of(word), (is_adjective(word) and before not in _PLURAL) or _is_noun(word, before)
-    base = word in bases(word) and not no_deed
+    form, how = form_of(word), is_adjective(word) and not (head and is_plural(before)) and before not in _PLURAL
+    base = word in bases(word) and not (how or _is_noun(word, before))
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()

@@ -22,6 +22,7 @@ from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_adverb, tokens_of
 from planner_service.themes.verb_group import NEARLY
 from scene_graphs.errors import UserError
+from scene_graphs.furniture import is_known
 
 MAX_THEME_LENGTH: Final = 2000
 """Letters of a theme."""
@@ -318,7 +319,7 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             continue
         elif mood is Emotion.HAPPY and one.clause.verb in _CRIES and one.clause.lemmas[1:2] != ("at",):
             one = one.in_mood(mood)  # who has won screams for joy
-        elif one.felt is Emotion.TIRED and one.beat.kind == "other" and not is_person(one.beat.who):
+        elif one.felt is Emotion.TIRED and _is_a_thing(one.beat.who):
             pass  # the shelf collapses
         elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
@@ -333,6 +334,11 @@ def _is_meanwhile(one: ReadBeat) -> bool:
     """Whether a beat tells how somebody looks who does the one before it: "sits there, | crying"."""
     beside = one.clause.joint in ("ing", ",") and not one.clause.subject and one.text.split()[0].endswith("ing")
     return beside and one.sure and one.felt is not None
+
+
+def _is_a_thing(who: str) -> bool:
+    head = lemma_of(head_of(who).lower())
+    return head == "it" or head in things() or is_known(head)
 
 
 def _is_settled_for(one: ReadBeat, after: ReadBeat) -> bool:
