@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import Final
 
 from motion_backend.motion import Skill
@@ -62,6 +62,12 @@ _MAX_FRAGMENT: Final = 4
 """Words of a sentence without a verb that may stand for a deed."""
 _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
+_GONE: Final = re.compile(
+    r"^(?:\w+ )?(?:out (?:of |through )?the (?:\w+ )?(?:door|house|flat)|off to (?:the )?\w+|back (?:for|to|into) the \w+"
+    r"|back home|home again|(?:in|on)?to the (?:kitchen|bedroom|living room|bathroom|study|hall|door|window))$",
+    re.IGNORECASE,
+)
+"""Words without a verb that tell of a way: "Out the door.", "Back for the keys." """
 _LIGHT_VERBS: Final = ("do", "have", "take", "play", "watch")
 """Verbs that a noun alone stands for: "dinner", "a nap", "yoga"."""
 _PUT_VERBS: Final = ("put", "take", "turn", "lay")
@@ -327,6 +333,18 @@ def object_of(clause: Clause) -> str:
     return next((lemma for lemma in clause.lemmas[1:] if lemma in body or _may_be_noun(lemma)), "")
 
 
+def thing_of(clause: Clause) -> str:
+    """The last of the nouns that name what a clause's deed is done to: of "the photo album" the album."""
+    noun = object_of(clause)
+    at = clause.lemmas.index(noun, 1) if noun else 0
+    others = grammar().adverbs | grammar().prepositions | grammar().marks
+    for after in clause.lemmas[at + 1 :] if noun else ():
+        if after in others or not is_noun(after):
+            break
+        noun = after
+    return noun
+
+
 def _is_of_body(clause: Clause, row: DeedRow) -> bool:
     """Whether only a part of the body does it, or has it done to it: "his heart raced", "opens one eye"."""
     body = theme_words()["body"]
@@ -353,6 +371,8 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     told = [word for word in words if word not in grammar().adverbs | grammar().joints]
     alone = clause.joint in ("", "then", ",") and 0 < len(told) <= _MAX_FRAGMENT and words[0] not in _NOT_NOW
+    if alone and _GONE.search(clause.text):
+        return deed_of(replace(clause, verb="walk", lemmas=("walk", *map(lemma_of, words))))
     if not alone or told[0] in ("out", "away"):
         return None
     for light in _PUT_VERBS if len(told) > 1 and told[-1] in _PUT else ():  # "kettle on, shoes off, feet up"
@@ -382,7 +402,8 @@ def _deed_of_fragment(clause: Clause) -> Deed | None:
 
 def _named(clause: Clause, about: str) -> list[str]:
     """Furniture that a clause names, or means by "it" and "there"."""
-    meant = _IT & set(clause.lemmas[1:]) or _INSIDE.search(clause.text)
+    counts = any(word == "one" and is_noun(after) for word, after in pairwise(clause.lemmas))  # "on one leg"
+    meant = (_IT & set(clause.lemmas[1:])) - ({"one"} if counts else set()) or _INSIDE.search(clause.text)
     return pieces_in(clause.text) or (pieces_in(about)[-1:] if meant else [])
 
 
@@ -486,7 +507,9 @@ def _says_how(clause: Clause) -> bool:
 def _kept(clause: Clause, about: str) -> tuple[str, ...]:
     """Where the first thing is that a clause names after its verb, or means by "it"."""
     places = things()
-    found = next((places[word] for word in clause.lemmas[1:] if word in places), ())
+    first = next((at for at, word in enumerate(clause.lemmas) if at and word in places), 0)
+    run = takewhile(places.__contains__, clause.lemmas[first:]) if first else ()
+    found = next((places[word] for word in reversed([*run])), ())  # "the photo | album"
     if found or not _IT & set(clause.lemmas[1:]):
         return found
     return next((places[word] for word in reversed(_lemmas(about)) if word in places), ())
@@ -495,7 +518,9 @@ def _kept(clause: Clause, about: str) -> tuple[str, ...]:
 def is_another(clause: Clause, piece: str) -> bool:
     """Whether a piece is itself a thing, a lamp or a picture, and no place for the other thing that hands do a deed to:
     nobody lights a candle at a lamp."""
-    kept = things().get(object_of(clause)) if _PICTURES.isdisjoint(clause.lemmas) else None
+    thing, first = thing_of(clause), object_of(clause)
+    shown = _PICTURES.isdisjoint(lemma for lemma in clause.lemmas if lemma in (thing, "wall") or lemma != first)
+    kept = things().get(thing) if shown else None
     alone = furniture.class_of(piece) == "light" or furniture.canonical(piece) in _ALONE
     return kept is not None and piece not in kept and alone
 
@@ -567,7 +592,9 @@ def pieces_told(text: str) -> list[tuple[str, str]]:
         ):
             name = " ".join(words[at : at + size])
             piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
-            found.append((name, deed_table().stands_on.get(piece, piece)))
+            after = lemma_of("".join(words[at + size : at + size + 1]))
+            if piece != "picture" or after not in things_called("book"):  # "the photo album"
+                found.append((name, deed_table().stands_on.get(piece, piece)))
         at += size or 1
     return found
 

@@ -217,9 +217,9 @@ class DeedReader:
         return replace(found, pieces=tuple(sorted(bearing, key=lambda one: -at(likely, one) if likely else 0)))
 
     def _deed(self, clause: Clause, about: str) -> Deed | None:
-        if "asleep" in clause.lemmas and lemma_of(head_of(clause.subject)) in theme_words()["body"]:
-            return None  # "her leg falls asleep"
         told, likely, never = deed_of(clause, about), self.likely(clause), self._never(clause)
+        if (told is None or "asleep" in clause.lemmas) and lemma_of(head_of(clause.subject)) in theme_words()["body"]:
+            return None  # "her leg falls asleep", "until her eyes close"
         if told is not None and never:
             told = _without(told, never)
             if (told is None or told.row.captions) and self._misled(clause):
@@ -290,7 +290,7 @@ class DeedReader:
             return by_table
         if by_table and deed.skill is Skill.TOUCH and opening_of(deed.skill, clause.text):
             return True  # a hand at the door opens it, whatever else may show it
-        if deed.skill is Skill.LOCO and clause.lemmas == ("leave",):
+        if deed.skill is Skill.LOCO and (clause.lemmas == ("leave",) or not (clause.verb or deed.row.captions)):
             return all(one.skill is Skill.LOCO for one in keyframes)  # seen walking, however they walk
         rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
         if by_table and rests and (RESTS.match(clause.text) or (deed.named and clause.verb in _RESTING)):
@@ -407,7 +407,8 @@ def _is_plain(deed: Deed, clause: Clause) -> bool:
     coming in, and getting up from what is named."""
     opens = bool(deed.row.captions) and opening_of(deed.skill, clause.text) is not None
     comes = deed.skill is Skill.LOCO and comes_in(clause.text)
-    return opens or comes or (deed.named and deed.skill in RISINGS)
+    goes = deed.skill is Skill.LOCO and (not clause.verb or clause.lemmas == ("leave",))  # "Out the door."
+    return opens or comes or goes or (deed.named and deed.skill in RISINGS)
 
 
 def _is_surer(deed: Deed, likely: Likely, clause: Clause) -> bool:

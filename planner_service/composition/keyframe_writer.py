@@ -207,7 +207,7 @@ class KeyframeWriter:
             return None
         if again or (_GOES_ON.match(clause.text) and self.deeds):
             done = list(self.deeds.values())
-            return self._tried or next((deed for deed in reversed(done) if deed.row.rests), done[0])
+            return self._tried or next((deed for deed in reversed(done[again:-1] or done) if deed.row.rests), done[0])
         return self.reader.deed(clause, self._about)
 
     def _within(self, read: ReadBeat) -> DeedRow | None:
@@ -276,6 +276,8 @@ class KeyframeWriter:
             mood = Emotion(deed.row.mood)
         if self._needs_nothing(index, read, deed):
             return
+        if not self.keyframes and sits_up(read, deed) and "bed" in deed.pieces:
+            self._begin(index, replace(deed, skill=Skill.GETUP), mood)
         resting = self.body.resting
         match deed.skill:
             case Skill.LOCO if resting is not None and read.text in _STANDS:
@@ -383,7 +385,8 @@ class KeyframeWriter:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
         begins = not self.keyframes and skill is Skill.LIEDOWN and not GETS_THERE.search(read.text)
         if self._add(index, read, deed, mood, skill, shown):
-            if begins and self._rises:  # who "cannot sleep. He gets up" lies there when the story begins
+            stays = read.clause.verb in ("stay", "remain")
+            if begins and (self._rises or stays):  # who "cannot sleep. He gets up" lies there when the story begins
                 self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
             self.body.resting, self.body.plain = self.keyframes[-1], not (deed.row.rests or captions)
             tables = [
@@ -555,7 +558,9 @@ class KeyframeWriter:
         """The keyframes of a part of a script, without a walk to where one is."""
         self.parts.append((index, part))
         *leading, done = part.keyframes
-        if self.body.stays(done, room):
+        resting = self.body.resting
+        goes_on = resting is not None and resting.furniture == done.furniture and done.skill is not Skill.TOUCH
+        if goes_on or self.body.stays(done, room):  # who drinks in bed lies back there
             leading, room = [], self.keyframes[-1].room
         elif leading and self.body.is_there(leading[0].furniture, room):
             leading = []

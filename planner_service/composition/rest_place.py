@@ -104,7 +104,7 @@ def dozing(resting: PlannedKeyframe | None, read: ReadBeat, reader: DeedReader) 
 
 def sits_up(read: ReadBeat, deed: Deed) -> bool:
     """Whether who lies sits there now: "sits up in bed"."""
-    return deed.skill is Skill.SITDOWN and read.clause.verb == "sit" and bool(re.search(r"\bup\b", read.text))
+    return deed.skill is Skill.SITDOWN and read.clause.verb == "sit" and bool(re.search(r"\bup(?:right)?\b", read.text))
 
 
 def is_beside(read: ReadBeat) -> bool:

@@ -6,8 +6,8 @@ import re
 from dataclasses import dataclass, field
 from typing import Final
 
-from planner_service.composition.deed_lexicon import Deed, object_of, pieces_in
-from planner_service.themes.lexicon import grammar, is_noun, lemma_of
+from planner_service.composition.deed_lexicon import Deed, pieces_in, thing_of
+from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import head_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
@@ -41,18 +41,6 @@ def is_held(clause: Clause) -> bool:
 def is_worn(clause: Clause) -> bool:
     """Whether hands do it in somebody's own clothes: "found them in his pocket"."""
     return bool(_WORN.search(clause.text))
-
-
-def _head_of(clause: Clause) -> str:
-    """The last of the nouns that name what a clause's deed is done to: of "the photo album" the album."""
-    noun = object_of(clause)
-    at = clause.lemmas.index(noun, 1) if noun else 0
-    others = grammar().adverbs | grammar().prepositions | grammar().marks
-    for after in clause.lemmas[at + 1 :] if noun else ():
-        if after in others or not is_noun(after):
-            break
-        noun = after
-    return noun
 
 
 @dataclass
@@ -118,7 +106,7 @@ class Whereabouts:
     def _thing(self, clause: Clause) -> str:
         """What a clause's deed is done to."""
         meant = self._named if _MEANT & set(clause.lemmas[1:4]) else ""
-        return meant or _head_of(clause)
+        return meant or thing_of(clause)
 
     def _comes_out(self, clause: Clause) -> bool:
         """Whether a thing is taken out of what was opened just before."""

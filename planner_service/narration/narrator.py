@@ -42,7 +42,8 @@ Rows = Sequence[tuple[int, PlannedKeyframe]]
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
     """The story of a script by rules; the same seed tells it in the same words."""
     voice = Voice.of(character)
-    title = title_of(script.theme, _mood_of(script), _thing_in(script))
+    shown = "\n".join(beat.text for beat in script.beats if beat.seen) if script.beats else None
+    title = title_of(script.theme, _mood_of(script), _thing_in(script), shown)
     wording = Wording(voice, Variety(seed, zlib.crc32(script.theme.encode())), places or {})
     if any(beat.text for beat in script.beats):
         return page(title, _Teller(script, voice, wording).sentences())
@@ -73,7 +74,7 @@ def _title_of(script: LongScript, wording: Wording) -> str:
 
 def _mood_of(script: LongScript) -> str:
     """The mood of most that happens now; that of the end, of two as frequent."""
-    now = [beat.emotion for beat in reversed(script.beats) if beat.kind in ("deed", "feeling") and not beat.who]
+    now = [beat.emotion for beat in reversed(script.beats) if beat.seen]
     return max(now, key=now.count).value if now else "neutral"
 
 

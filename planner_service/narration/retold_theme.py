@@ -169,7 +169,8 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
     if word == "mean" and before in _PLURAL and follows == "to":
         return "meant"
-    form, base = form_of(word), word in bases(word) and not (is_adjective(word) or _is_noun(word, before))
+    form, how = form_of(word), is_adjective(word) and not (head and is_plural(before)) and before not in _PLURAL
+    base = word in bases(word) and not (how or _is_noun(word, before))
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
@@ -193,7 +194,7 @@ def _helper(word: str, before: str) -> str:
 
 def _is_noun(word: str, before: str) -> bool:
     """Whether a word in -s names things: "the keys", "hands"."""
-    led = before in grammar().marks | grammar().prepositions | {"no", "some"}
+    led = before in grammar().marks - {"other"} | grammar().prepositions | {"no", "some"}
     of_body = lemma_of(word) in theme_words()["body"] and lemma_of(word) not in EXPRESSIONS  # "grins"
     return led or of_body or not is_verb(word)
 

@@ -8,6 +8,8 @@ from typing import Final
 
 from motion_backend.motion import Skill
 from planner_service.narration.narrative_voice import require_blanks
+from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.things import things
 from scene_graphs.data_tables import read_table, require_known, table
 
 MAX_PATTERN_LENGTH: Final = 3000
@@ -59,16 +61,22 @@ def story_words() -> StoryWords:
     return known
 
 
-def title_of(theme: str, mood: str, thing: str = "") -> str:
+def title_of(theme: str, mood: str, thing: str = "", shown: str | None = None) -> str:
     """A short title: after what the theme is about, else a thing that something is done to, else after its mood and the
-    time of day it speaks of."""
+    time of day it speaks of. No story is called after things that are not among what is `shown` of it."""
     found = {
-        name: next((words for pattern, words in rows if pattern.search(theme)), "")
+        name: next((words for pattern, words in rows if _is_about(pattern, theme, shown)), "")
         for name, rows in story_words().patterns.items()
     }
     plain = story_words().mood_titles[mood].format(time=found["times"] or "Day")
     about = f"The {thing.title()}" if thing else ""
     return found["titles"] or about or re.sub(r"^A (?=[AEIOU])", "An ", plain)
+
+
+def _is_about(pattern: re.Pattern[str], theme: str, shown: str | None) -> bool:
+    told = pattern.search(theme)
+    is_thing = told is not None and any(lemma_of(word) in things() for word in told[0].lower().split())
+    return told is not None and (not is_thing or shown is None or pattern.search(shown) is not None)
 
 
 def headline(text: str) -> str:

@@ -22,6 +22,7 @@ from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_adverb, tokens_of
 from planner_service.themes.verb_group import NEARLY
 from scene_graphs.errors import UserError
+from scene_graphs.furniture import is_known
 
 MAX_THEME_LENGTH: Final = 2000
 """Letters of a theme."""
@@ -73,6 +74,10 @@ _CRIES: Final = ("scream", "shriek")
 _LAUGHS: Final = ("laugh", "giggle", "chuckle", "cackle")
 _TEARS: Final = re.compile(r"\b(?:tears?|cr(?:y|ies|ied|ying)|weeps?|wept|weeping|aches?|hurts?)\b", re.IGNORECASE)
 """Who laughs till these is happy."""
+_MADE_UP: Final = re.compile(
+    r"^(?:\w+ )?(?:ma(?:kes?|de) (?:it )?up(?! \w+ (?:mind|bed))|say?s?(?:id)? sorry)\b|\btogether(?: again)?$", re.IGNORECASE
+)
+"""What people do who were angry with each other."""
 _CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
 
 
@@ -301,10 +306,12 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             continue
         if after is not None and together and not one.sure and _is_meanwhile(after):
             one = one.in_mood(after.felt or mood)  # "collapses | giggling"
+        if after is not None and together and one.felt is None and _is_settled_for(one, after):
+            one = one.in_mood(after.felt or mood)  # "sinks onto the sofa | and cries"
         spoken = index > 0 and before.sure and before.beat.kind == one.beat.kind == "speech"
         if spoken:  # how it is said tells less than what is said: "“I am so happy!” she shouts"
             mood = before.felt or mood
-        elif one.clause.verb in theme_words()["calming_verbs"] and mood is Emotion.ANGRY:
+        elif mood is Emotion.ANGRY and (one.clause.verb in theme_words()["calming_verbs"] or _MADE_UP.search(one.text)):
             mood = Emotion.NEUTRAL  # who shrugs is angry no more
         elif one.felt is Emotion.HAPPY and one.clause.verb in theme_words()["finding_verbs"] and not one.sure:
             found = one.beat.model_copy(update={"emotion": mood})  # glad of it, and not on the way to it
@@ -313,6 +320,8 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
             continue
         elif mood is Emotion.HAPPY and one.clause.verb in _CRIES and one.clause.lemmas[1:2] != ("at",):
             one = one.in_mood(mood)  # who has won screams for joy
+        elif one.felt is Emotion.TIRED and _is_a_thing(one.beat.who):
+            pass  # the shelf collapses
         elif one.felt is not None:
             if one.sure or mood not in _LOUDER.get(one.felt, ()) or before.clause.sentence != one.clause.sentence:
                 mood = one.felt
@@ -326,6 +335,17 @@ def _is_meanwhile(one: ReadBeat) -> bool:
     """Whether a beat tells how somebody looks who does the one before it: "sits there, | crying"."""
     beside = one.clause.joint in ("ing", ",") and not one.clause.subject and one.text.split()[0].endswith("ing")
     return beside and one.sure and one.felt is not None
+
+
+def _is_a_thing(who: str) -> bool:
+    head = lemma_of(head_of(who).lower())
+    return head == "it" or head in things() or is_known(head)
+
+
+def _is_settled_for(one: ReadBeat, after: ReadBeat) -> bool:
+    """Whether somebody sits or lies down in the mood that the next beat tells."""
+    goes_on = after.clause.joint in ("and", ",") and not after.clause.subject
+    return goes_on and after.sure and after.felt is not None and one.clause.verb in theme_words()["settling_verbs"]
 
 
 def rooms_in(text: str) -> tuple[str, ...]:

@@ -206,7 +206,10 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
     living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
-    people.sort(key=lambda one: (bool(pronoun) and _is_several(one.subject), one.sentence, one.place))
+    by_pronoun = _deeds_by(clauses, ("he", "she"))
+    less = {who for who, times in by_pronoun.items() if 2 * times < by_pronoun[pronoun]}
+    people.sort(key=lambda one: (bool(pronoun) and _is_several(one.subject), one.subject.lower() in less,
+                                 one.sentence, one.place))  # fmt: skip
     # Whom no list knows does most: "Rex, soft as butter, comes home, kneels to tickle the puppy".
     busy = [who for who, times in deeds.most_common() if times > 1 and who.istitle() and _may_live(who)]
     return next(iter([*living, *(one.subject for one in people), *(who for who in busy if " " not in who)]), "")

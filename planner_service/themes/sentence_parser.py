@@ -214,8 +214,11 @@ def _segments(line: str) -> list[str]:
     # What has no mark but commas before its end is one sentence: the library takes longer than all else to say so.
     if _PLAIN.fullmatch(line):
         return [line]
-    found: list[str] = _segmenter().segment(line)
-    return found
+    return [part for some in _segmenter().segment(line) for part in _AFTER_MAY.split(some)]
+
+
+_AFTER_MAY: Final = re.compile(r"(?<=\bMay\.) (?=[A-Z])")
+"""Where pysbd takes the month for a title."""
 
 
 @cache

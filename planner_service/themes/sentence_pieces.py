@@ -269,7 +269,7 @@ def _is_plain_verb(piece: Piece) -> bool:
         after.text.startswith("«") or after.low in known.marks | known.prepositions | known.subjects | known.numbers
     )
     told = led or not is_noun(first) or first in theme_words()["speech_verbs"]
-    return verb_of(first) == first and (told or (after is not None and first not in things()))
+    return verb_of(first) == first and (told or first not in things())
 
 
 def _describes_next(piece: Piece, after: Sequence[Piece]) -> bool:

@@ -146,7 +146,8 @@ def has_verb(text: str) -> bool:
 def is_plural(word: str) -> bool:
     """Whether a word may be the plural of a noun, or mean several people."""
     nouns = kinds_of(word).get("NOUN", ())
-    return (len(word) > _SHORTEST and any(noun != word for noun in nouns)) or word in _SEVERAL
+    people = word != lemma_of(word) in theme_words()["people"]  # "flatmates", whom no dictionary has
+    return (len(word) > _SHORTEST and any(noun != word for noun in nouns)) or people or word in _SEVERAL
 
 
 def is_adverb(word: str) -> bool:
@@ -185,7 +186,7 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         return True  # "they all duck"
     if before in grammar().numbers and at and tokens[at - 1].low == "of":
         return is_third_person(word)  # "a girl of six jumps"
-    if before in grammar().marks | grammar().numbers:
+    if before in grammar().marks | grammar().numbers and not (before == "other" and at == 1):
         return False
     if word.endswith("ing"):
         led = before in grammar().with_gerund or tokens[0].low == "instead"

@@ -15,6 +15,8 @@ _ONESELF: Final = frozenset(("himself", "herself", "themselves", "themself", "my
 """Who lets or makes themselves do a thing does it."""
 NEARLY: Final = frozenset(("nearly", "almost"))
 """Adverbs before what is not done after all."""
+_GOING_ON: Final = frozenset(("carry", "go", "press", "keep"))
+"""Verbs that with "on" say that the deed after them goes on."""
 _MAX_WORDS: Final = 6
 """Words within which the deed of an aspect stands: "spends the whole long evening reading"."""
 
@@ -119,7 +121,7 @@ def _wishes(before: Sequence[Token]) -> frozenset[str]:
 
 def _passing_step(words: Sequence[Token], at: int, low: str, base: str) -> int:
     """Verbs that only say how the deed is done, and adverbs."""
-    if base in grammar().aspects and (place := _aspect(words, at)):
+    if base in (grammar().aspects | _GOING_ON) and (place := _aspect(words, at)):
         return place - at
     return 1 if low in grammar().adverbs or (low.endswith("ly") and not base) else 0
 
@@ -155,6 +157,8 @@ def _verb_follows(words: Sequence[Token], at: int) -> bool:
 def _aspect(words: Sequence[Token], at: int) -> int:
     """Where the deed of an aspect stands, 0 where the verb is the deed itself ("goes home", "tries a new recipe")."""
     base = verb_of(words[at].low)
+    if base in _GOING_ON and [token.low for token in words[at + 1 : at + 2]] == ["on"]:  # "carries on typing"
+        return at + 2 if words[at + 2 :] and words[at + 2].low.endswith("ing") and verb_of(words[at + 2].low) else 0
     for place in range(at + 1, min(at + _MAX_WORDS + 1, len(words))):
         low, before = words[place].low, words[place - 1].low
         if low == "to":
