@@ -40,7 +40,6 @@ from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import BeatKind, Keyframe, LongScript, PlannedKeyframe
 from planner_service.themes.beats import beats_of
-from planner_service.themes.protagonist import cast_by
 from planner_service.themes.lexicon import gerund, past, third_person
 from planner_service.themes.protagonist import cast_by
 from scene_graphs.furniture import catalogue, display_name
