@@ -31,7 +31,7 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
-from planner_service.themes.beats import EXPRESSIONS, ReadBeat
+from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.opening_words import comes_in, opening_of
 from planner_service.themes.protagonist import head_of, is_name, is_person
@@ -265,8 +265,6 @@ class DeedReader:
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
-        if one.sure and one.clause.verb in EXPRESSIONS:
-            return one  # who "weeps quietly" is not at peace
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
             return one

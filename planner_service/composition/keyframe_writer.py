@@ -292,7 +292,7 @@ class KeyframeWriter:
                 self._rise(index, deed, mood)
             case Skill.LOCO if resting is not None and goes_on(read, deed):
                 self.body.show(index)
-            case Skill.LOCO if deed.row.seated and sits(resting) and "stand" not in read.clause.lemmas:
+            case Skill.LOCO if deed.row.seated and sits(resting) and not _is_done_standing(read):
                 self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
             case Skill.LOCO if deed.row.lying and lies(resting) and (not deed.named or is_on(resting, deed)):
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
@@ -576,6 +576,11 @@ class KeyframeWriter:
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _is_done_standing(read: ReadBeat) -> bool:
+    """Whether who sits gets up for what may be done sitting too: "eats standing", "stares out of the window"."""
+    return "stand" in read.clause.lemmas or opening_of(Skill.LOCO, read.text) == "window"
 
 
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:

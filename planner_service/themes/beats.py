@@ -71,6 +71,7 @@ EXPRESSIONS: Final = {
 }
 """Verbs that say how somebody feels who does it."""
 _CRIES: Final = ("scream", "shriek")
+_WEEPS: Final = ("weep", "cry", "sob")
 _LAUGHS: Final = ("laugh", "giggle", "chuckle", "cackle")
 _TEARS: Final = re.compile(r"\b(?:tears?|cr(?:y|ies|ied|ying)|weeps?|wept|weeping|aches?|hurts?)\b", re.IGNORECASE)
 """Who laughs till these is happy."""
@@ -180,6 +181,8 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     laughs = clause.verb in _LAUGHS and _TEARS.search(clause.text)
+    if emotion is Emotion.RELAXED and clause.verb in _WEEPS:
+        emotion = Emotion.SAD  # who "weeps quietly" is not at peace
     if (laughs or not sure) and not who and (shown := EXPRESSIONS.get(clause.verb)):
         raves = clause.verb in _CRIES and clause.lemmas[1:2] == ("at",)  # fright is at nobody
         emotion, sure = Emotion.ANGRY if raves else shown, True

@@ -248,6 +248,9 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[1 : at + 1]))
     if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word) and not named:
         return False  # "under the sofa cushions", but "as quiet as a cat the burglar climbs in"
+    feels = is_adjective(tokens[0].low) and len(tokens) > 1 and tokens[1].low in grammar().prepositions
+    if feels and tokens[at].text[:1].islower() and is_noun(word) and not named:
+        return False  # "anxious about the exam results"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = _goes_on(after) or after in (",", "and")
