@@ -143,7 +143,8 @@ class ActedBeats:
         something is not acted; none without beats."""
         if not self.outcomes:
             return []
-        share = f"{1 - self.other_share:.0%} of the screen time shows them"
+        other = f"{self.other_share:.0%}"
+        share = "nothing else is played" if other == "0%" else f"{other} of the screen time plays something else"
         plain = all(one.acted and not one.beat.unshown for one in self.outcomes)
         more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [

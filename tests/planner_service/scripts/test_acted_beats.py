@@ -164,7 +164,7 @@ def test_one_keyframe_may_serve_several_beats() -> None:
 def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() -> None:
     found = acted_beats([SITS, READS, NO_SUPPER], [shot(0, seconds=3.0), shot(None, seconds=1.0)])
     assert found.lines() == [
-        "1 of 2 beats of your theme are acted; 75% of the screen time shows them",
+        "1 of 2 beats of your theme are acted; 25% of the screen time plays something else",
         "not acted: reads (no keyframe is left that shows it)",
         "left undone, as asked: eats no supper",
         *(ACTED, NOT_SHOWN, LEFT_UNDONE),
