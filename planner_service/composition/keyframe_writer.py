@@ -59,9 +59,9 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.opening_words import Kind, opening_of
-from planner_service.themes.protagonist import head_of, names_somebody
+from planner_service.themes.protagonist import head_of, is_person, names_somebody
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
@@ -73,6 +73,8 @@ NOT_ACTED: Final = {
     "speech": "it is said; the body does not speak",
 }
 """Why beats of these kinds are not acted."""
+ONE_PLAYS: Final = "one person is played"
+_NOT_THERE: Final = frozenset(("nobody", "no", "none", "somebody", "someone", "everybody", "everyone"))
 SPOKEN_OF: Final = "it is only spoken of"
 NO_DEED: Final = "it is no deed"
 UNSHOWN: Final = "none of the captions shows it"
@@ -106,7 +108,12 @@ def _not_acted(read: ReadBeat) -> str:
     """Why a beat of a kind that is not acted is not."""
     if read.clause.aside and read.beat.kind != "memory":
         return SPOKEN_OF
-    nobody = not read.beat.who or (read.beat.who.lower() in ("it", "there") and read.clause.verb == "be")
+    who = read.beat.who
+    nobody = not who or (who.lower() in ("it", "there") and read.clause.verb == "be")
+    first, *rest = who.split(" ")
+    if read.beat.kind == "other" and is_person(who) and first.lower() not in _NOT_THERE:
+        named = " ".join([first.lower() if first.lower() in grammar().marks else first, *rest])
+        return f"{named} does it: {ONE_PLAYS}"
     return NO_DEED if read.beat.kind == "other" and nobody else NOT_ACTED[read.beat.kind]
 
 
