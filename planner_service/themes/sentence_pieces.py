@@ -31,7 +31,7 @@ _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long"
 """What joining words stand after where they join nothing: "at once", "for a while"."""
 _PAIRS: Final = frozenset(
     (("up", "down"), ("down", "up"), ("back", "forth"), ("to", "fro"), ("round", "round"), ("over", "over"),
-     ("on", "on"), ("in", "out"), ("again", "again"), ("off", "on"), ("on", "off"))
+     ("on", "on"), ("in", "out"), ("again", "again"), ("hide", "seek"), ("off", "on"), ("on", "off"))
 )  # fmt: skip
 """Words that "and" makes one: "up and down"."""
 

@@ -158,7 +158,7 @@ def is_adverb(word: str) -> bool:
 def _acts(tokens: Sequence[Token], place: int) -> bool:
     """Whether the word there acts as a verb, going by its form and the words about it."""
     word, base = tokens[place].low, verb_of(tokens[place].text)
-    if calls(tokens, place):
+    if calls(tokens, place) or tokens[place].text.endswith(("'s", "’s")):
         return False
     if not base or [token.low for token in tokens[place + 1 : place + 3]] == ["in", "hand"]:
         return False  # "phone in hand"
@@ -226,6 +226,8 @@ def _opens(word: str, base: str, after: str) -> bool:
     """Whether a word that opens a clause acts as a verb, before another word."""
     if word.endswith("ing"):
         return not is_noun(word) or bool(after)
+    if lemma_of(word) in theme_words()["body"] and participle(verb_of(after)) == after != "":
+        return False  # "eyes closed"
     sure = is_third_person(word) or participle(base) != past(base) == word  # "fell", "woke"
     if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions | _PARTICLES):
         return False
@@ -260,7 +262,9 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         )
         two = any(token.low == "and" and two_people(tokens[: place + 1], of) for of, token in enumerate(tokens[:at]))
         return (past(base) == base and named) or two or (is_plural(before) and acts)
-    return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
+    rests = after.endswith("ing") and before in theme_words()["people"]  # "the father stands swaying"
+    plain = not (is_noun(word) and word.endswith("s")) or rests
+    return plain or _goes_on(after) or is_adjective(after) or is_noun(after)
 
 
 def two_people(tokens: Sequence[Token], joint: int) -> bool:
