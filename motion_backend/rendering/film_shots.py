@@ -91,6 +91,12 @@ TO_FRONT: Final = 3.0
 """What it counts to see the front of what is touched well,"""
 FRONTAL: Final = 0.4
 """and how well it must be seen, if any camera sees it so: from the side a cabinet is a board that hides the hand."""
+ASIDE: Final = (0.19, 0.12, 0.06)
+"""Radians by which a camera is turned to the side, at most so that a body that was in the middle is at a third."""
+OFF_CENTRE: Final = 0.2
+"""What that counts."""
+EXACT: Final = 0.02
+"""Metres that what was just within a picture may be beyond, where it is turned."""
 TRIES: Final = 12
 """Views of a shot of which pictures are looked at."""
 
@@ -175,14 +181,17 @@ class _Director:
         bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
         if self._outlook(start, stop) is not None:
             bodies = replace(bodies, face=None)
-        found: list[tuple[tuple[tuple[bool, bool, bool], float], FilmShot]] = []
-        for view in views[:TRIES]:
-            scene = self.set.seen(view.camera, self.joints[start:stop])
-            look = bodies.look(scene, view.camera)
-            worth = view.score + look.appeal if any(look.rank) else look.shown
-            found.append(((look.rank, worth), FilmShot(start, stop, view.camera, scene, framing.subject)))
-        (rank, _), best = max(found, key=lambda one: one[0])
-        return best, rank[0]
+        found = [self._looked(framing, bodies, view) for view in views[:TRIES]]
+        best = max(found, key=lambda one: one.worth)
+        aside = [self._looked(framing, bodies, view) for view in best.view.aside(self.aspect)]
+        best = max([best, *aside], key=lambda one: one.worth)
+        return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), best.worth[0][0]
+
+    def _looked(self, framing: Framing, bodies: Appearances, view: _View) -> _Looked:
+        """A view of which a small picture was looked at."""
+        scene = self.set.seen(view.camera, self.joints[framing.start : framing.stop])
+        look = bodies.look(scene, view.camera)
+        return _Looked((look.rank, view.score + look.appeal if any(look.rank) else look.shown), view, scene)
 
     def _views(self, framing: Framing, before: FilmShot | None) -> list[_View]:
         """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet, with the
@@ -215,7 +224,7 @@ class _Director:
                 if framing.deed is not None:
                     score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), self._doing(framing)).mean())
                 score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
-                scored.append(_View(score - self._broken(camera, before, start), camera))
+                scored.append(_View(score - self._broken(camera, before, start), camera, points))
         return _sorted(_frontal(scored, front))
 
     def _reached(self, start: int, stop: int) -> Array:
@@ -304,6 +313,25 @@ class _View(NamedTuple):
 
     score: float
     camera: Camera
+    points: Array = np.empty((0, 3))
+    """What is in its picture wherever it is turned to, (N, 3); none where it is not turned."""
+
+    def aside(self, aspect: float) -> Iterator[_View]:
+        """The same turned to either side as far as it goes, up to where the body has a third of the picture before or
+        behind it: there is less of what is outside of a home in one of them."""
+        for side in (-1, 1) if len(self.points) else ():
+            cameras = (_turned(self.camera, side * turn) for turn in ASIDE)
+            turned = next((camera for camera in cameras if _holds(camera, self.points, aspect)), None)
+            if turned is not None:
+                yield _View(self.score - OFF_CENTRE, turned)
+
+
+class _Looked(NamedTuple):
+    """A view, how good its picture is, and what it sees of the home."""
+
+    worth: tuple[tuple[bool, bool, bool], float]
+    view: _View
+    scene: Sequence[Solid]
 
 
 def _sampled(start: int, stop: int) -> NDArray[np.int64]:
@@ -378,6 +406,22 @@ def _fitted(yaw: float, pitch: float, points: Array, aspect: float, nearest: flo
     # A point is within the picture where its distance to the axis, with skin, is at most `wide` times its depth.
     asked = [(np.abs(up) + MARGIN) / wide - ahead, (np.abs(across) + MARGIN) / (wide * aspect) - ahead, MARGIN - ahead]
     return orbit(target, max(nearest, float(np.max(asked))), yaw, pitch, FOV)
+
+
+def _turned(camera: Camera, radians: float) -> Camera:
+    """A camera turned to its left where it stands."""
+    way = rotations.rotate(rotations.yaw_to_quat(radians), np.subtract(camera.target, camera.eye))
+    x, y, z = (np.asarray(camera.eye) + way).tolist()
+    return replace(camera, target=(x, y, z))
+
+
+def _holds(camera: Camera, points: Array, aspect: float) -> bool:
+    """Whether all points (N, 3), with the skin around them, are well within the picture."""
+    across, up, ahead = np.moveaxis(camera.view(points), -1, 0)
+    wide = np.tan(FOV / 2) * FRAME * ahead
+    return bool(
+        (np.abs(up) + MARGIN <= wide + EXACT).all() and (np.abs(across) + MARGIN <= wide * aspect + EXACT).all()
+    )
 
 
 def _distance(camera: Camera) -> float:
