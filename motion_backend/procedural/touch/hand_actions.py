@@ -18,7 +18,7 @@ from motion_backend.procedural.pose import Pose, concatenate, interpolate, smoot
 from motion_backend.procedural.touch.gestures import wave_of
 from motion_backend.procedural.touch.hand_captions import Laid, with_arms
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.hand_placement import gripped
+from motion_backend.procedural.touch.hand_placement import Grip, gripped
 from motion_backend.procedural.touch.touch_keys import (
     HeldTouches,
     Stroke,
@@ -61,8 +61,8 @@ class Way:
     doing: str = ""
     looks: float = 1.0
     """How much of the time for looking at the thing it needs."""
-    turns: tuple[float, float] = (0.0, 0.0)
-    """How far a grip is turned to either side (radians)."""
+    grip: Callable[[Pose], Grip] | None = None
+    """How far the hand turns what it holds in such a pose, of who turns something."""
     step: Callable[[Pose, tuple[int, int, int]], Pose] = lambda whole, _lengths: whole
     """A foot that steps up to the thing and back, in frames of coming, doing and leaving."""
     speeds_up: float = 3.0
@@ -254,9 +254,11 @@ def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     """A grip that is turned to and fro about what it holds; the elbow goes up and down with it, and the trunk along."""
     row = keys.rotate
     time, ease, held = _held(there, seconds, keys.ease_s)
-    wave = _wave(row.turn_hz, time)
-    angle = ease * np.where(wave > 0, way.turns[1], -way.turns[0]) * wave
-    held = gripped(held, way.hands[0], angle, way.laid.normal, row)
+    if way.grip is None:
+        return held
+    grip = way.grip(there)
+    angle = ease * grip.swung(_wave(row.turn_hz, time))
+    held = gripped(held, way.hands[0], angle, way.laid.normal, grip, row)
     left, _ = way.turned()
     along = angle / row.turn_rad
     still = np.zeros_like(along)

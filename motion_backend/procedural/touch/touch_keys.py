@@ -220,9 +220,6 @@ class Rotate:
     """From the wrist to the middle of what it turns about."""
     lift_per_rad: float
     """How far the hand comes off what it lies on for every radian of the turn (metres)."""
-    elbow_left_ratio: float
-    """How the elbow's direction changes for every radian of the turn."""
-    elbow_up_ratio: float
     pelvis_m: float
     spine_turn_rad: float
     spine_side_rad: float
