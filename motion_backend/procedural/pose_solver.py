@@ -123,13 +123,13 @@ def _straighter(pose: Pose, share: Array) -> Pose:
 
 
 def _early(angle: Array) -> Array:
-    """Angles (T,) that are there some frames before they have to be, and come and go smoothly; the last one is as it has
-    to be, since the body goes on from it."""
+    """Angles (T,) that are there some frames before they have to be, and come and go smoothly; the first and the last one
+    are as they have to be, since the body goes on from one segment's last frame in the next."""
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
     eased = gaussian_filter1d(maximum_filter1d(angle, 2 * EASED + 1, mode="nearest"), EASED / 2, mode="nearest")
-    left = np.arange(len(angle))[::-1] / (2 * EASED)
-    return np.asarray(angle + smooth(left) * (eased - angle))
+    at = np.arange(len(angle))
+    return np.asarray(angle + smooth(np.minimum(at, at[::-1]) / (2 * EASED)) * (eased - angle))
 
 
 def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:

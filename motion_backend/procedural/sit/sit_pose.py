@@ -28,7 +28,7 @@ TO_TABLE = np.radians(np.arange(2.0, 48.0, 1.0))
 """Leans forward that are tried until the elbows of hands on a table are bent enough."""
 EASY_TABLE = 0.70
 """A table's edge is no farther from the pelvis for hands that do something on it (metres at 1.70 m)."""
-EASY_ELBOW = np.radians(112.0)
+EASY_ELBOW = np.radians(116.0)
 """How far an elbow is open at most whose hand is on a table."""
 HEAD_ON_ARMS = 0.13
 """The joint of a head that lies on arms, above the table these lie on (metres at 1.70 m)."""
