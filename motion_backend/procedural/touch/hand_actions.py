@@ -285,8 +285,9 @@ def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
             reach[:, index] += wave[:, None] * (
                 move.aside_m * left + move.ahead_m * ahead + move.off_m * way.laid.normal
             )
-            turn = rotations.axis_to_quat("x", -side * move.tilt_rad * wave)
-            palms[:, index] = rotations.compose(palms[:, index], turn)
+            tilt = rotations.axis_to_quat("x", -side * move.tilt_rad * wave)
+            bend = rotations.axis_to_quat("z", side * move.bend_rad * wave)
+            palms[:, index] = rotations.compose(palms[:, index], rotations.compose(tilt, bend))
     spine = held.spine + np.stack([0 * aside, row.spine_turn_rad / keys.wash.usual_m * aside, 0 * aside], axis=1)
     return replace(held, reach=reach, palms=palms, spine=spine)
 
