@@ -123,8 +123,8 @@ def _straighter(pose: Pose, share: Array) -> Pose:
 
 
 def _early(angle: Array) -> Array:
-    """Angles (T,) that are there some frames before they have to be, and come and go smoothly; the first and the last one
-    are as they have to be, since the body goes on from one segment's last frame in the next."""
+    """Angles (T,) that are there some frames before they have to be, and come and go smoothly; the first and the last
+    are as they have to be, since the body goes on from a segment's last frame in the next."""
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
     eased = gaussian_filter1d(maximum_filter1d(angle, 2 * EASED + 1, mode="nearest"), EASED / 2, mode="nearest")

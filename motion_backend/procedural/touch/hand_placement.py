@@ -150,15 +150,17 @@ def _follows(tried: Pose, laid: Laid, skeleton: Skeleton) -> NDArray[np.bool_]:
     arm = Arm.of(tried, skeleton, index, chest_frame(tried, skeleton))
     skin, hand, _ = _palm_skin(arm, skeleton.scale)
     gap = ((skin - wrist) @ laid.normal + HAND_REST).min(axis=1)
-    unlike = rotations.length(rotations.quat_to_rotvec(rotations.compose(rotations.inverse(hand), tried.palms[:, index])))
+    unlike = rotations.length(
+        rotations.quat_to_rotvec(rotations.compose(rotations.inverse(hand), tried.palms[:, index]))
+    )
     upper, _ = arm_rotations(arm.limb, arm.side)
     strain = out_of_cone(f"{arm.name}_shoulder", rotations.compose(rotations.inverse(arm.clavicle), upper))
     return np.asarray((unlike[:, 0] < UNLIKE) & (gap > gap[len(gap) // 2] - DEEPER) & (strain < UNLIKE))
 
 
 def _swings(can: NDArray[np.bool_]) -> list[float]:
-    """From no turn on outwards, the swing of the elbow for each turn, as near to the last one as may be; as far as there
-    is one within reach. `can` is (turns, swings)."""
+    """From no turn on outwards, the swing of the elbow for each turn, as near to the last one as may be; as far as
+    there is one within reach. `can` is (turns, swings)."""
     found = [0.0]
     for row in can[1:]:
         away = np.where(row, np.abs(SWINGS - found[-1]), np.inf)
