@@ -289,7 +289,9 @@ def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
             bend = rotations.axis_to_quat("z", side * move.bend_rad * wave)
             palms[:, index] = rotations.compose(palms[:, index], rotations.compose(tilt, bend))
     spine = held.spine + np.stack([0 * aside, row.spine_turn_rad / keys.wash.usual_m * aside, 0 * aside], axis=1)
-    return replace(held, reach=reach, palms=palms, spine=spine)
+    away = 1.0 if way.laid.hand == "right" else -1.0
+    ear = ease[:, None] * away * np.array([0.0, row.ear_turn_rad, row.ear_side_rad])
+    return replace(held, reach=reach, palms=palms, spine=spine, head=held.head + ear)
 
 
 _HELD: Final[dict[str, Callable[[Way, Pose, float, HeldTouches], Pose]]] = {

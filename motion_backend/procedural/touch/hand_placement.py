@@ -170,6 +170,14 @@ def _swings(can: NDArray[np.bool_]) -> list[float]:
     return found
 
 
+def lies_free(hand: tuple[Array, Array], side: float, seen: Depth, scale: float) -> bool:
+    """Whether a palm laid flat there is in nothing that stands on the surface: its wrist (3,) and palm (4,), 1 left or
+    -1 right."""
+    wrist, palm = hand
+    points = wrist + scale * rotations.rotate(palm[None], PALM * [side, 1.0, 1.0])
+    return bool(seen(points).max() <= 0.0)
+
+
 def _grid(laid: Laid, row: HandPlacement) -> tuple[Array, Array, Array]:
     """Turns of the hand on the surface, tips of its fingers into it and swings of its elbow that are tried. (N,)."""
     turns = row.top_turns_rad if is_top(laid.normal) else row.front_turns_rad

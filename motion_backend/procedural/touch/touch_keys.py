@@ -255,6 +255,10 @@ class Busy:
     moves: tuple[HandMove, ...]
     spine_turn_rad: float = 0.0
     """Of the trunk, for every stroke aside by `Wash.usual_m`."""
+    ear_turn_rad: float = 0.0
+    """How far the head is turned away from the hand, an ear to the thing."""
+    ear_side_rad: float = 0.0
+    """And bent down to it."""
 
 
 @table
