@@ -208,7 +208,7 @@ ON_TABLE = ("table", "keyboard", "paper", "pen", "desk", *PILLOWS)
 """Those of them that are on a table."""
 BUSY_ON_TABLE = frozenset(ON_TABLE) - {"desk", *PILLOWS}
 """And those on which hands do something: elbows are bent for that."""
-INSTEAD = {"desk": "clasped"} | dict.fromkeys(PILLOWS, "forehead") | dict.fromkeys(BUSY_ON_TABLE, "lap")
+INSTEAD = dict.fromkeys(("desk", *PILLOWS), "knees") | dict.fromkeys(BUSY_ON_TABLE, "lap")
 """Where hands lie if a surface is not there; on the thighs otherwise."""
 LACKED = {
     "armrest": "armrest",
@@ -222,14 +222,7 @@ LACKED = {
     "folded_over": "lap to fold hands in",
 } | dict.fromkeys(ON_TABLE, "table before the seat")
 """What is not there, of what hands were to be on, in words."""
-WHERE = {
-    "thighs": "on its thigh",
-    "knees": "on its knee",
-    "lap": "in the lap",
-    "own_shin": "on its shin",
-    "clasped": "between the knees",
-    "forehead": "under the head",
-}
+WHERE = {"thighs": "on its thigh", "knees": "on its knee", "lap": "in the lap", "own_shin": "on its shin"}
 """Where a hand is instead, in words."""
 ON_THE_FLOOR = {
     "thighs": "knees",
