@@ -170,10 +170,9 @@ def _swings(can: NDArray[np.bool_]) -> list[float]:
     return found
 
 
-def lies_free(hand: tuple[Array, Array], side: float, seen: Depth, scale: float) -> bool:
-    """Whether a palm laid flat there is in nothing that stands on the surface: its wrist (3,) and palm (4,), 1 left or
-    -1 right."""
-    wrist, palm = hand
+def lies_free(wrist: Array, palm: Array, side: float, seen: Depth, scale: float) -> bool:
+    """Whether the palm (4,) of a hand laid flat with its wrist (3,) there is in nothing that stands on the surface; 1 is
+    the left one, -1 the right."""
     points = wrist + scale * rotations.rotate(palm[None], PALM * [side, 1.0, 1.0])
     return bool(seen(points).max() <= 0.0)
 

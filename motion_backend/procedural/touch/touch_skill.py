@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -68,9 +69,8 @@ def reach(body: Body, part: Part) -> None:
     doing = handling_of(action.caption)
     both = with_both_hands(action.caption) or (steadies(action.caption) and not any(holding(body.pose)))
     seen = body.scene.depth_about(spot.object_id)
-    other = other_hand(obstacles, spot, (goal, action.hand), scale) if both else None
-    if other is not None and not lies_free(other, -1.0 if action.hand == "left" else 1.0, seen, scale):
-        other = None
+    is_free = partial(lies_free, side=-1.0 if action.hand == "left" else 1.0, seen=seen, scale=scale)
+    other = other_hand(obstacles, spot, (goal, action.hand), scale, is_free) if both else None
     if with_both_hands(action.caption) and other is None:
         body.note("no room for both hands: one hand")
     laid = Laid(goal, palm, normal, action.hand, other)
