@@ -171,8 +171,8 @@ def _swings(can: NDArray[np.bool_]) -> list[float]:
 
 
 def lies_free(wrist: Array, palm: Array, side: float, seen: Depth, scale: float) -> bool:
-    """Whether the palm (4,) of a hand laid flat with its wrist (3,) there is in nothing that stands on the surface; 1 is
-    the left one, -1 the right."""
+    """Whether the palm (4,) of a hand laid flat with its wrist (3,) there is in nothing that stands on the surface; 1
+    is the left one, -1 the right."""
     points = wrist + scale * rotations.rotate(palm[None], PALM * [side, 1.0, 1.0])
     return bool(seen(points).max() <= 0.0)
 
