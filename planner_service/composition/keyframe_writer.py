@@ -394,7 +394,8 @@ class KeyframeWriter:
         """Lie or sit: who gets up has done so before."""
         skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
         need, already = NEEDS[skill], not self.keyframes
-        piece = next((one for one in (*deed.pieces, usually, "bed") if affords(one, need) and self.places.has(one)), "")
+        order = (*deed.pieces, usually) if deed.named or need == "lie" else (usually, *deed.pieces)
+        piece = next((one for one in (*order, "bed") if affords(one, need) and self.places.has(one)), "")
         if not piece:
             self.why[index] = "there is nothing to get up from"
             return

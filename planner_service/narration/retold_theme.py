@@ -202,7 +202,7 @@ def _is_list(told: Retelling, stretch: Stretch) -> bool:
     known = lemma_of(first) in things() or is_known(first)
     ways = grammar().adverbs | {"on", "off", "up", "down", "out", "in", "away", "first", "next"}
     opens = not any(token.is_word for token in told.tokens[start : stretch.start])
-    return opens and known and len(rest) < 2 and ways.issuperset(rest)
+    return opens and known and len(rest) < 2 and all(word in ways or is_adjective(word) for word in rest)
 
 
 def _tell_of(voice: Voice, tokens: Sequence[Token], hero: str, own: str) -> None:

@@ -171,6 +171,9 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         if at >= 0 and word == base != past(base):
             return False  # nobody is told to do things
         alone = {token.low for token in tokens[1:]} <= grammar().adverbs | _PARTICLES | {"everywhere", "on", "in"}
+        wet = not place and len(tokens) == 2 and is_adjective(tokens[1].low) and word.endswith("s")
+        if wet and lemma_of(word) in things():
+            return False  # "Socks impossible"
         if not place and tokens[1:] and alone and not word.endswith(("ed", "ing")) and lemma_of(word) in things():
             return False  # "Boxes everywhere.", "kettle on, shoes off"
         return _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
