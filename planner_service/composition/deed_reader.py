@@ -33,6 +33,7 @@ from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.no_deeds import is_state
 from planner_service.themes.opening_words import comes_in, opening_of
 from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
@@ -261,7 +262,7 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            if one.beat.who.split(" ")[0].lower() in _NOBODY or _sounds(one):
+            if one.beat.who.split(" ")[0].lower() in _NOBODY or _sounds(one) or is_state(one.clause):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             told = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text

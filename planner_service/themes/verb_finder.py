@@ -254,9 +254,10 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = _goes_on(after) or after in (",", "and")
+        led = tokens[at - 1].low in _ARTICLES if at > 2 else tokens[0].low in grammar().marks | grammar().numbers
         goes_on = after in grammar().marks or is_noun(after)
         acts = (
-            not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks | grammar().numbers and at <= 2)
+            not is_noun(word) or goes_on or (ends and led)
         )
         two = any(token.low == "and" and two_people(tokens[: place + 1], of) for of, token in enumerate(tokens[:at]))
         return (past(base) == base and named) or two or (is_plural(before) and acts)
