@@ -251,7 +251,8 @@ def deed_of(clause: Clause, about: str = "", row: DeedRow | None = None) -> Deed
     fitting = [piece for piece in named if affords(piece, need)]
     on_top = found.skill is skill and _ON_TOP.search(clause.text) and _LIMBS.isdisjoint(clause.lemmas)
     if skill is Skill.SITDOWN and not on_top:
-        seats = [seat for piece in named for seat in deed_table().seats_at.get(piece, ())]
+        at = [piece for piece in named if not (fitting and piece == "tv stand")]  # "watches TV on the loveseat"
+        seats = [seat for piece in at for seat in deed_table().seats_at.get(piece, ())]
         fitting = seats or fitting
     under = need == "lie" and bool(named) and not fitting and bool(_UNDER.search(clause.text))
     if under or _FLOOR.search(clause.text):

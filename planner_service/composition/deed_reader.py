@@ -33,6 +33,7 @@ from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.no_deeds import is_state
 from planner_service.themes.opening_words import comes_in, opening_of
 from planner_service.themes.protagonist import head_of, is_name, is_person
 from planner_service.themes.sentence_parser import Clause
@@ -218,7 +219,8 @@ class DeedReader:
 
     def _deed(self, clause: Clause, about: str) -> Deed | None:
         told, likely, never = deed_of(clause, about), self.likely(clause), self._never(clause)
-        if (told is None or "asleep" in clause.lemmas) and lemma_of(head_of(clause.subject)) in theme_words()["body"]:
+        seems = told is None and likely is not None and _only_seems(likely.best, clause)
+        if (seems or "asleep" in clause.lemmas) and lemma_of(head_of(clause.subject)) in theme_words()["body"]:
             return None  # "her leg falls asleep", "until her eyes close"
         if told is not None and never:
             told = _without(told, never)
@@ -261,10 +263,15 @@ class DeedReader:
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
             first = one.beat.who.split(" ")[0]
-            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or _sounds(one):
+            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or _sounds(one) or is_state(one.clause):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
-            return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": ""})) if ours else one
+            told = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text
+            return (
+                replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": "", "text": told}))
+                if ours
+                else one
+            )
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
             return one
@@ -384,7 +391,7 @@ def _in_particular(deed: Deed, likely: Likely, clause: Clause) -> Deed:
     """A deed of which the table has no more than its skill, with the captions that show how it is done: "sits
     upright"; none in which hands do what is not told of."""
     row, known = deed.row, _idle(deed.skill, _learned(deed.skill), clause)
-    if row.captions or row.why or deed.skill is not row.skill or comes_in(clause.text):
+    if row.captions or row.why or deed.skill is not row.skill or _is_plain(deed, clause):
         return deed
     most = likely.of(deed.skill, known)
     some = tuple(one for one in known if likely.of(deed.skill, (one,)) >= LIKELIEST * most)

@@ -112,7 +112,8 @@ def _not_acted(read: ReadBeat) -> str:
     nobody = not who or (who.lower() in ("it", "there") and read.clause.verb == "be")
     first, *rest = who.split(" ")
     if read.beat.kind == "other" and is_person(who) and first.lower() not in _NOT_THERE:
-        named = " ".join([first.lower() if first.lower() in grammar().marks else first, *rest])
+        named = " ".join([first.lower() if first.lower() in grammar().marks else first, *rest[:2]])
+        named = named if len(rest) <= 2 and grammar().prepositions.isdisjoint(rest) else "somebody else"
         return f"{named} does it: {ONE_PLAYS}"
     return NO_DEED if read.beat.kind == "other" and nobody else NOT_ACTED[read.beat.kind]
 
@@ -406,7 +407,8 @@ class KeyframeWriter:
         """Lie or sit: who gets up has done so before."""
         skill, usually = (Skill.LIEDOWN, "bed") if deed.skill is Skill.GETUP else (Skill.SITDOWN, "chair")
         need, already = NEEDS[skill], not self.keyframes
-        piece = next((one for one in (*deed.pieces, usually, "bed") if affords(one, need) and self.places.has(one)), "")
+        order = (*deed.pieces, usually) if deed.named or need == "lie" else (usually, *deed.pieces)
+        piece = next((one for one in (*order, "bed") if affords(one, need) and self.places.has(one)), "")
         if not piece:
             self.why[index] = "there is nothing to get up from"
             return

@@ -169,7 +169,8 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
     if word == "mean" and before in _PLURAL and follows == "to":
         return "meant"
-    form, how = form_of(word), is_adjective(word) and not (head and is_plural(before)) and before not in _PLURAL
+    acts = before in _PLURAL or (head and (is_plural(before) or follows in grammar().marks))
+    form, how = form_of(word), is_adjective(word) and not acts
     base = word in bases(word) and not (how or _is_noun(word, before))
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
@@ -206,7 +207,7 @@ def _is_list(told: Retelling, stretch: Stretch) -> bool:
     known = lemma_of(first) in things() or is_known(first)
     ways = grammar().adverbs | {"on", "off", "up", "down", "out", "in", "away", "first", "next"}
     opens = not any(token.is_word for token in told.tokens[start : stretch.start])
-    return opens and known and len(rest) < 2 and ways.issuperset(rest)
+    return opens and known and len(rest) < 2 and all(word in ways or is_adjective(word) for word in rest)
 
 
 def _tell_of(voice: Voice, tokens: Sequence[Token], hero: str, own: str) -> None:

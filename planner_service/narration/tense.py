@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import cache
 from typing import Final, Literal
 
-from planner_service.themes.lexicon import gerund, kinds_of, participle, past, third_person
+from planner_service.themes.lexicon import gerund, kinds_of, participle, past, third_person, verb_of
 
 Form = Literal["past", "present", "ing", "participle"]
 """Of verbs that are not in their base form; present is that of he and she."""
@@ -30,7 +30,7 @@ def bases(word: str) -> tuple[str, ...]:
     known = kinds_of(word)
     if not known and len(word) > 4 and word.endswith(("s", "ed", "ing")):
         known = getAllLemmasOOV(word, upos="VERB")
-    return tuple(known.get("VERB", ()))
+    return tuple(known.get("VERB", ())) or ((word,) if verb_of(word) == word else ())  # "hoover"
 
 
 @cache

@@ -5,12 +5,16 @@ from __future__ import annotations
 import re
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.lexicon import grammar, is_adjective, lemma_of, participle, verb_of
 from planner_service.themes.protagonist import head_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of
+from scene_graphs.furniture import is_known
 
+_PUT: Final = frozenset(("on", "off", "up", "down", "out", "away", "in", "open", "ready"))
+"""How a thing is when somebody has done it: "Kettle on"."""
 _NONE: Final = frozenset(("nothing", "nobody", "none", "no", "silence"))
 _FALLS: Final = frozenset(("rain", "snow", "hail", "sleet", "drizzle", "thunder"))
 """Weather that may be a verb too: "Rain all Sunday"."""
@@ -43,8 +47,18 @@ def _is_when_or_none(clause: Clause) -> bool:
     if "but" in clause.lemmas:
         return False  # "Nothing but boredom"
     near = (head_of(clause.text).lower(), clause.text.split()[0].lower())
+    if is_state(clause):
+        return True
     told = {*near, *map(lemma_of, near)}
     return bool(told & (words["weather"] | words["told_times"] | _NONE))
+
+
+def is_state(clause: Clause) -> bool:
+    """Whether two words tell how a thing is: "Fridge empty", "Socks impossible", not "Shoes off" or "Door locked"."""
+    words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
+    thing, how = words if len(words) == 2 else ("", "")
+    done = how in _PUT or participle(verb_of(how) or "be") == how
+    return is_adjective(how) and not done and (lemma_of(thing) in things() or is_known(thing))
 
 
 def _is_who(clause: Clause) -> bool:

@@ -142,7 +142,7 @@ def _named_beside(theme: str, clauses: Sequence[Clause], pronoun: str) -> str:
 def is_name(word: str) -> bool:
     """Whether a word is a name: one that we know, or one with a capital that no dictionary has."""
     low = word.lower()
-    known = kinds_of(low) or not _not_names().isdisjoint((low, low.removesuffix("s")))  # "Mondays"
+    known = kinds_of(low) or low in things() or not _not_names().isdisjoint((low, low.removesuffix("s")))  # "Mondays"
     return word[:1].isupper() and (low in _pronouns_by_list("names") or not known)
 
 

@@ -79,6 +79,8 @@ _MEANWHILE: Final = re.compile(
     r"|(?:hours|minutes|moments|an hour|a minute|a moment) later)),? (?=([a-z]+)\b)"
 )
 """When it is, between a joint and what is done then: "drinks coffee, and | at dawn | falls asleep"."""
+_AGO: Final = re.compile(r"\b(?:years?|months?|weeks?|days?|decades|ages|long) ago\b", re.IGNORECASE)
+"""What was done then is not done now."""
 _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
 
@@ -135,11 +137,14 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         )
 
     found: list[Clause] = []
-    for number, sentence in enumerate(sentences_of(_QUOTE.sub(kept, text))):
+    sentences = sentences_of(_QUOTE.sub(kept, text))
+    for number, sentence in enumerate(sentences):
         told: list[list[Clause]] = []
         doer = ""
         for piece in (pieces := pieces_of(sentence)):
             parts = _clause(piece, quotes, number)
+            if sentences[1:] and _AGO.search(piece.text):  # it is told beside what is done now
+                parts = [replace(part, perfect=bool(part.verb)) for part in parts]
             parts = _sharing(_main(told[-1]), parts) if told else parts
             own = _main(parts).subject
             if own.lower() in RELATIVES and doer:

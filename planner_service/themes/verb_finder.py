@@ -171,6 +171,9 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         if at >= 0 and word == base != past(base):
             return False  # nobody is told to do things
         alone = {token.low for token in tokens[1:]} <= grammar().adverbs | _PARTICLES | {"everywhere", "on", "in"}
+        wet = not place and len(tokens) == 2 and is_adjective(tokens[1].low) and word.endswith("s")
+        if wet and lemma_of(word) in things():
+            return False  # "Socks impossible"
         if not place and tokens[1:] and alone and not word.endswith(("ed", "ing")) and lemma_of(word) in things():
             return False  # "Boxes everywhere.", "kettle on, shoes off"
         return _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
@@ -256,10 +259,9 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = _goes_on(after) or after in (",", "and")
+        led = tokens[at - 1].low in _ARTICLES if at > 2 else tokens[0].low in grammar().marks | grammar().numbers
         goes_on = after in grammar().marks or is_noun(after)
-        acts = (
-            not is_noun(word) or goes_on or (ends and tokens[0].low in grammar().marks | grammar().numbers and at <= 2)
-        )
+        acts = not is_noun(word) or goes_on or (ends and led)
         two = any(token.low == "and" and two_people(tokens[: place + 1], of) for of, token in enumerate(tokens[:at]))
         return (past(base) == base and named) or two or (is_plural(before) and acts)
     rests = after.endswith("ing") and before in theme_words()["people"]  # "the father stands swaying"

@@ -337,6 +337,7 @@ def test_what_happens_elsewhere_has_a_reason_not_to_be_acted(text: str) -> None:
         ("looks at the tv", ["tv stand"]),
         ("hangs a picture, a clock and a mirror", ["picture", "clock", "mirror"]),
         ("holds her chest", []),
+        ("opens the photo album near the picture", ["picture"]),
         ("", []),
     ],
 )
@@ -397,6 +398,7 @@ EATS, GASPS, SHUTS = (
     "covering the mouth with both hands",
     "covering the ears with both hands",
 )
+TALKS = "talking with both hands"
 PRAYS, LOOKS_UP = "praying, palms together", "looking up, head tilted back"
 SHOES, KICKS = "bending to the feet, both hands at the ankles", "kicking with the right foot"
 
@@ -423,7 +425,12 @@ SHOES, KICKS = "bending to the feet, both hands at the ankles", "kicking with th
         ("prays", PRAYS), ("makes a wish", PRAYS), ("folds her hands in prayer", PRAYS),
         ("looks up at the stars", LOOKS_UP), ("gazes at the moon", LOOKS_UP), ("tilts her head back", LOOKS_UP),
         ("rubs her sore feet", SHOES), ("says grace", "praying while seated, palms together"),
-        ("kicks off her shoes", KICKS),
+        ("kicks off her shoes", KICKS), ("pulls on her trousers", TOES), ("straightens her skirt", DRESSES),
+        ("smooths his shirt", DRESSES), ("finds them on top of her own head", SCRATCHES),
+        ("calls from the hall", "shouting, hands cupped at the mouth"), ("bickers over the map", TALKS),
+        ("talks it over with her", TALKS), ("hugs", "hugging to the chest with both arms"),
+        ("is on a video call with his boss", "talking while seated, with both hands"),
+        ("listens to the rain", "listening, right hand at the ear"),
     ],
 )  # fmt: skip
 def test_what_limbs_and_head_do_is_a_gesture(text: str, caption: str) -> None:

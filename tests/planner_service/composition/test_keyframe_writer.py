@@ -305,6 +305,34 @@ def test_who_sits_for_something_does_so_where_the_theme_has_them_sit_next(theme:
     assert found <= {*seats}
 
 
+@for_each(
+    ("theme", "done"),
+    [
+        # Who drinks or sits up in bed stays in it, and is in it when the story begins.
+        ("She lies in bed. She drinks tea and falls asleep.", ["liedown", "sitdown", "liedown"]),
+        ("She sits up in bed, blows her nose and lies back down.", ["liedown", "sitdown", "liedown"]),
+        ("She stays in bed.", ["liedown"]),
+        ("She gets up from the sofa.", ["sitdown", "standup"]),
+        # A way is gone though no verb tells of it.
+        ("She drinks tea. Out the door.", ["sitdown", "standup", "loco"]),
+        ("She assembles a bookcase. She sits on the floor, reads the manual and starts again.",
+         ["touch", "sitdown", "standup", "loco", "touch"]),
+    ],
+)  # fmt: skip
+def test_nobody_leaves_where_it_is_done_for_what_is_told_next(theme: str, done: list[str]) -> None:
+    script = planned(theme)
+    way = next(at for at, one in enumerate(script.keyframes) if one.already or not connects(one))
+    assert [one.skill.value for one in script.keyframes[way:]] == done
+
+
+def test_who_eats_before_the_television_sits_on_the_sofa() -> None:
+    assert [one.furniture for one in own(planned("She eats it in front of the television."))] == ["sofa"]
+
+
+def test_one_leg_is_no_bed_that_was_named_before() -> None:
+    assert own(planned("She looks under the bed. She hops on one leg."))[-1].furniture == "floor"
+
+
 def test_who_stood_still_looks_out_of_the_window_in_a_moment_of_its_own() -> None:
     stands = [one.beat for one in own(planned("She stays perfectly still. She looks out of the window."))]
     assert stands == [0, 1]

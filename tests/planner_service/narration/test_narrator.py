@@ -385,6 +385,10 @@ def retold(theme: str, voice: Voice = SHE) -> str:
         ("Ana came home and sat down.", "Ana came home and sat down."),
         ("A person walks to the sofa. The person sits down.", "Ana walked to the sofa. Ana sat down."),
         ("A writer paces up and down.", "Ana, a writer, paced up and down."),
+        ("Ana mutes herself and carries on typing.", "Ana muted herself and carried on typing."),
+        ("Ana knits until her eyes close.", "Ana knit until her eyes closed."),
+        ("One sings, the other washes up.", "One sang, the other washed up."),
+        ("Socks impossible. Ana sits down.", "Socks impossible. Ana sat down."),
     ],
 )
 def test_a_theme_is_told_in_its_own_words_in_the_past(theme: str, told: str) -> None:
@@ -587,6 +591,9 @@ def test_what_somebody_goes_to_do_is_told_in_the_past_too(theme: str, told: str)
     [
         ("She scrubs the sink. She unwraps the scarf and folds the scarf.", "The Scarf"),
         ("She paces. She sits down. She laughs.", "A Day at Home"),
+        # Not after things that nobody is seen with.
+        ("She paces. The keys are gone.", "A Day at Home"),
+        ("She takes the keys.", "The Keys"),
     ],
 )
 def test_a_story_is_called_after_what_is_done_in_it(theme: str, title: str) -> None:

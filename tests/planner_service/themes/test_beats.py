@@ -165,6 +165,14 @@ def test_one_person_is_played_and_others_are_named(theme: str, who: list[str]) -
         ("Mia collapses giggling on the rug.", ["happy", "happy"]),
         ("He sits on the bed, sobbing, and cries.", ["sad", "sad", "sad"]),
         ("He shouts, hides from her mother and slams the door.", ["angry", "angry", "angry"]),
+        ("She laughs, but then she sinks onto the sofa and cries.", ["happy", "sad", "sad"]),
+        ("He shouts at her. Then they build the tower together.", ["angry", "neutral"]),
+        ("He shouts at her, says sorry and eats.", ["angry", "neutral", "neutral"]),
+        ("He shouts, hugs her and eats.", ["angry", "neutral", "neutral"]),
+        ("The shelf collapses. He reads.", ["neutral", "neutral"]),
+        ("He collapses. He reads.", ["tired", "tired"]),
+        ("They had a row about money.", ["angry"]),
+        ("A tired mother hums.", ["tired"]),
     ],
 )
 def test_a_mood_lasts_until_another_one_comes(theme: str, wanted: list[str]) -> None:

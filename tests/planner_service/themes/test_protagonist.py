@@ -116,6 +116,8 @@ def test_a_baby_is_the_hero_only_where_nobody_is_he_or_she() -> None:
         ("A courier rings the bell. Oskar opens, signs for the parcel and unpacks it.", "Oskar"),
         ("Her mother calls, and Rosa sits down on the sofa, sighs and listens.", "Rosa"),
         ("Mr Novak's wife is away. He watches football and drinks beer.", "Mr Novak"),
+        ("She shouted. He slammed the door, sat down and wept.", "He"),
+        ("She shouted and wept. He slammed the door, sat down and wept.", "She"),
         # whoever does more is what it is about
         ("The courier carries parcels up the stairs, rests, drinks water and leaves. Anna closes the door.",
          "The courier"),

@@ -33,6 +33,9 @@ def said(text: str) -> list[str]:
         ("She forces herself to eat an apple.", "eat"),
         ("He makes himself stand up.", "stand"),
         ("She used to dance.", "dance"),
+        ("He carries on typing.", "type"),
+        ("She went on reading.", "read"),
+        ("He carries on to the kitchen.", "carry"),
     ],
 )
 def test_verbs_that_only_lead_to_a_deed_leave_it_the_word(theme: str, verb: str) -> None:
@@ -294,6 +297,13 @@ def test_who_does_it_lasts_to_the_end_of_the_sentence_but_not_who_does_it_meanwh
         ("1) she sets the table 2) waits 3) eats", ["sets the table", "waits", "eats"]),
         ("My roommate and I watch a film.", ["watch a film"]),
         ("Mum and Dad came home, and argued.", ["came home", "argued"]),
+        ("Wake up, stretch, make the bed.", ["Wake up", "stretch", "make the bed"]),
+        ("Make tea, toast and jam.", ["Make tea, toast and jam"]),
+        ("Two flatmates argue about the rent.", ["argue about the rent"]),
+        ("One yawns, the other washes up angrily.", ["yawns", "washes up angrily"]),
+        ("Nobody comes and Vera eats alone.", ["comes", "eats alone"]),
+        ("She goes and sits down.", ["sits down"]),
+        ("His brother died in May. He reads.", ["died in May", "reads"]),
     ],
 )
 def test_a_clause_ends_where_somebody_else_is_named_and_headings_and_times_are_none(
