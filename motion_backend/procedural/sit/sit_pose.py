@@ -36,6 +36,8 @@ AS_GOOD = 0.02
 """Elbows that are no farther off lie as well (metres at 1.70 m, of both)."""
 LEANS = np.radians(np.arange(8.0, 76.0, 1.0))
 """Leans of the trunk that are tried until the elbows lie."""
+LEANT_FORWARD = np.radians(26.0)
+"""Who leans on the thighs is seen to lean: by so much at least."""
 BEHIND_PELVIS = 0.12
 """From the pelvis joint to the skin of the back (metres)."""
 BACKREST = 0.42
@@ -180,7 +182,8 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     if style.on_elbows and style.arms == PILLOWS and place.around.table is not None:
         return _head_on_arms(_leaning(pose, seat, -LEANS, skeleton, keys.trunk), place, holds, skeleton), holds
     if style.on_elbows:
-        return _on_elbows(_leaning(pose, seat, -LEANS, skeleton, keys.trunk), place, holds, skeleton), holds
+        leans = LEANS if _on_table(holds) else LEANS[LEANS >= LEANT_FORWARD]
+        return _on_elbows(_leaning(pose, seat, -leans, skeleton, keys.trunk), place, holds, skeleton), holds
     back = np.array([_recline(style, place, keys.trunk)])
     leaned = _leaning(pose, seat, back, skeleton, keys.trunk).at(0)
     leaned = replace(leaned, spine=leaned.spine + bend(0.0, style.own.side, style.own.turn))
@@ -331,12 +334,17 @@ def _on_elbows(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> P
     gap = np.zeros(len(leans))
     for name in ("left", "right"):
         hip, knee, elbow = (joints[:, INDEX[f"{name}_{joint}"]] for joint in ("hip", "knee", "elbow"))
-        if holds[0] is not None and holds[0].part == "":
+        if _on_table(holds):
             gap += np.abs(elbow[:, 1] - place.around.table_top - ELBOW * skeleton.scale)
         else:
             gap += np.abs(_from_bone(elbow, hip, knee) - ON_THIGH * skeleton.scale)
     # The least lean that is as good as any: farther down arms are between knees and trunk.
     return at_rest(leans.at(int(np.argmax(gap < gap.min() + AS_GOOD * skeleton.scale))), holds, skeleton)
+
+
+def _on_table(holds: Holds) -> bool:
+    """Whether hands lie on what is no part of the body."""
+    return holds[0] is not None and holds[0].part == ""
 
 
 def _head_on_arms(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> Pose:
