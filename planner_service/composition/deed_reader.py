@@ -266,7 +266,11 @@ class DeedReader:
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             told = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text
-            return replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": "", "text": told})) if ours else one
+            return (
+                replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": "", "text": told}))
+                if ours
+                else one
+            )
         mood = max(likely.moods, key=lambda mood: likely.moods[mood])
         if likely.moods[mood] < MOODY or mood is Emotion.NEUTRAL:
             return one

@@ -29,7 +29,9 @@ def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequ
     """A beat, and all of them, with what "it" is in its clause: who sits down at a desk and "opens it" opens the diary
     that was named before."""
     read = beats[index]
-    if _ANSWERS.fullmatch(read.text) and any(_CALLS.search(one.text) for one in beats[max(index - _REMEMBERED, 0) : index]):
+    if _ANSWERS.fullmatch(read.text) and any(
+        _CALLS.search(one.text) for one in beats[max(index - _REMEMBERED, 0) : index]
+    ):
         read = replace(read, clause=replace(read.clause, lemmas=("answer", "the", "phone")))
         return read, [*beats[:index], read, *beats[index + 1 :]]
     meant = meant_by_it(read.text, [one.text for one in beats[max(index - _REMEMBERED, 0) : index]])

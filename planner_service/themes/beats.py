@@ -75,7 +75,8 @@ _LAUGHS: Final = ("laugh", "giggle", "chuckle", "cackle")
 _TEARS: Final = re.compile(r"\b(?:tears?|cr(?:y|ies|ied|ying)|weeps?|wept|weeping|aches?|hurts?)\b", re.IGNORECASE)
 """Who laughs till these is happy."""
 _MADE_UP: Final = re.compile(
-    r"^(?:\w+ )?(?:ma(?:kes?|de) (?:it )?up(?! \w+ (?:mind|bed))|say?s?(?:id)? sorry)\b|\btogether(?: again)?$", re.IGNORECASE
+    r"^(?:\w+ )?(?:ma(?:kes?|de) (?:it )?up(?! \w+ (?:mind|bed))|say?s?(?:id)? sorry)\b|\btogether(?: again)?$",
+    re.IGNORECASE,
 )
 """What people do who were angry with each other."""
 _CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")

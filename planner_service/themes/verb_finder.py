@@ -108,7 +108,7 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
 
 
 def _opening_name(tokens: Sequence[Token]) -> int:
-    """How many words name whom a clause opens with before what they do, though a name may be a verb too: "Peter | stands
+    """How many words name whom a clause opens with before what they do, though it may be a verb too: "Peter | stands
     up", "Grandma Rose | knits"; 0 where none do."""
     called = tokens[:1] and (tokens[0].text[:1].isupper() and tokens[0].low in theme_words()["people"])
     end = 1 + bool(called)
@@ -256,16 +256,14 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         ends = _goes_on(after) or after in (",", "and")
         led = tokens[at - 1].low in _ARTICLES if at > 2 else tokens[0].low in grammar().marks | grammar().numbers
         goes_on = after in grammar().marks or is_noun(after)
-        acts = (
-            not is_noun(word) or goes_on or (ends and led)
-        )
+        acts = not is_noun(word) or goes_on or (ends and led)
         two = any(token.low == "and" and two_people(tokens[: place + 1], of) for of, token in enumerate(tokens[:at]))
         return (past(base) == base and named) or two or (is_plural(before) and acts)
     return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
 
 
 def two_people(tokens: Sequence[Token], joint: int) -> bool:
-    """Whether "and", which stands there, joins two people who do something together: "Marta and her husband | argue"."""
+    """Whether "and", which stands there, joins two people who do something together: "Marta and her son | argue"."""
     people, end = theme_words()["people"], joint + 1
     if not joint or not (tokens[joint - 1].low in people or tokens[joint - 1].text[:1].isupper()):
         return False
