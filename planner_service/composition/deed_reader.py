@@ -265,9 +265,9 @@ class DeedReader:
             if one.beat.who.split(" ")[0].lower() in _NOBODY or _sounds(one) or is_state(one.clause):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
-            told = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text
+            words = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text
             return (
-                replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": "", "text": told}))
+                replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": "", "text": words}))
                 if ours
                 else one
             )
