@@ -53,7 +53,9 @@ def test_skipped(): pass
     ("last", "says"),
     [
         ("def test_last(): pass", "2 failed, 3 passed, 2 skipped, 2 errors"),
-        ("def test_last(): os._exit(3)", "a process ended with 3 after test_0.py::test_last"),
+        pytest.param(
+            "def test_last(): os._exit(3)", "a process ended with 3 after test_0.py::test_last", marks=pytest.mark.sweep
+        ),
     ],
 )
 def test_what_becomes_of_a_test_in_a_forked_process_is_told_even_if_it_ends_the_process(

@@ -34,7 +34,7 @@ INSIDE: Final = 0.5
 """The zero-moment point is led into so much of each sole, about its middle: who stands on an edge tips at once."""
 ROUNDS: Final = 4
 """Where a point is nearest to the soles changes as it is moved: so often it is looked for again."""
-STILL, SMOOTH = 0.35, 3e-6
+STILL, SMOOTH = 0.3, 3e-6
 """What a shift (m²) and the jerk of the shifted pelvis ((m/s³)²) cost against a point (m²) outside."""
 JERK: Final = np.array([1.0, -3.0, 3.0, -1.0])
 """The third difference of a lone shift."""

@@ -11,11 +11,13 @@ from motion_backend.body.joint_limits import overbent, within
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.inverse_kinematics import Limb, leg_rotations, two_bone
 from motion_backend.procedural.arm_solver import SIDES, Arm, hanging_from
-from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.pose import Pose, smooth
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, Skeleton
 
 SPINE = ("spine1", "spine2", "spine3")
+ROUNDED = 1.72
+"""A spine bent by so many times what its pelvis tips keeps the neck where it was: its joints are at some height."""
 EASED = 6
 """Frames before and after in which a pelvis tips back (see `hips_within`), or a trunk straightens (`head_clear`)."""
 UNTWISTS = 3
@@ -58,17 +60,33 @@ def hips_within(pose: Pose, skeleton: Skeleton) -> Pose:
     Hips lie on the axis that the pelvis tips about, and near to the one it rolls about: legs and feet stay where they
     are.
     """
+    needed = _beyond_hips(pose, skeleton)
+    if not (needed > 0).any():
+        return pose
+    early = [_early(np.maximum(angle, 0.0)) for angle in needed]
+    return _tipped(pose, np.stack([early[0] - early[1], np.zeros(len(pose)), early[2] - early[3]], axis=1), 1.0)
+
+
+def folded_within(poses: Pose, skeleton: Skeleton) -> Pose:
+    """N poses apart in which no hip bends beyond its range: the pelvis tips back, and the back is rounded so much more
+    that the neck is where it was."""
+    bent = np.maximum(_beyond_hips(poses, skeleton)[1], 0.0)
+    return _tipped(poses, np.stack([-bent, 0 * bent, 0 * bent], axis=1), ROUNDED)
+
+
+def _beyond_hips(pose: Pose, skeleton: Skeleton) -> Array:
+    """How far hips stretch, bend, and spread to the left and right beyond their range, below 0 within it. (4, T)."""
     thighs = [leg_rotations(_leg(pose, skeleton, index, name))[0] for index, (name, _) in enumerate(SIDES)]
     local = rotations.compose(rotations.inverse(pose.hips), np.stack(thighs))
     left, right = (overbent(f"{name}_hip", turn) for (name, _), turn in zip(SIDES, local, strict=True))
     bent, stretched = np.minimum(left, right)[:, 0], np.maximum(left, right)[:, 0]
-    needed = np.stack([stretched, -bent, left[:, 1], right[:, 1]])
-    if not (needed > 0).any():
-        return pose
-    early = [_early(np.maximum(angle, 0.0)) for angle in needed]
-    tipped = np.stack([early[0] - early[1], np.zeros(len(pose)), early[2] - early[3]], axis=1)
-    hips = rotations.compose(pose.hips, rotations.rotvec_to_quat(tipped))
-    return replace(pose, hips=hips, spine=pose.spine - tipped)
+    return np.stack([stretched, -bent, left[:, 1], right[:, 1]])
+
+
+def _tipped(pose: Pose, angles: Array, spine_share: float) -> Pose:
+    """Frames with their pelvis tipped by rotation vectors (T, 3), and the spine bent back by such a share of it."""
+    hips = rotations.compose(pose.hips, rotations.rotvec_to_quat(angles))
+    return replace(pose, hips=hips, spine=pose.spine - spine_share * angles)
 
 
 def head_clear(pose: Pose, solid: Obstacles, skeleton: Skeleton) -> Pose:
@@ -105,12 +123,13 @@ def _straighter(pose: Pose, share: Array) -> Pose:
 
 
 def _early(angle: Array) -> Array:
-    """Angles (T,) that are there some frames before they have to be, and come and go smoothly."""
+    """Angles (T,) that are there some frames before they have to be, and come and go smoothly; the first and the last
+    are as they have to be, since the body goes on from a segment's last frame in the next."""
     from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
-    return np.asarray(
-        gaussian_filter1d(maximum_filter1d(angle, 2 * EASED + 1, mode="nearest"), EASED / 2, mode="nearest")
-    )
+    eased = gaussian_filter1d(maximum_filter1d(angle, 2 * EASED + 1, mode="nearest"), EASED / 2, mode="nearest")
+    at = np.arange(len(angle))
+    return np.asarray(angle + smooth(np.minimum(at, at[::-1]) / (2 * EASED)) * (eased - angle))
 
 
 def chest_frame(pose: Pose, skeleton: Skeleton) -> tuple[Array, Array]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.motion import Motion, Skill
+from motion_backend.rendering.hand_deed import HANDS, Blow, from_hanging
 from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
@@ -31,15 +32,20 @@ CURTAIN = 0.20
 STRIDE = 0.62
 """Metres the root goes between two poses of a walk in one picture."""
 SEEN = [INDEX[n] for n in ("pelvis", "head", "spine3", "left_knee", "right_knee", "left_foot", "right_foot")]
-HANDS = [INDEX["left_wrist"], INDEX["right_wrist"]]
-"""Joints that a picture should show."""
+"""Joints that a picture should show, with the hands."""
 HIDDEN, BLOCKED, AT_WINDOW, INDOORS = 2.5, 3.0, 2.0, 0.3
 """What counts how much: a body that is hidden, an eye within furniture, a curtain, an eye in the body's room."""
 HELD = 0.15
 """And to have what is held on the camera's side of the body."""
 CLOSE = 0.4
 """Metres in front of an eye that are free of furniture."""
-_SHOULDERS = [INDEX["left_shoulder"], INDEX["right_shoulder"]]
+NEAR_HAND, IN_IT, ABOVE_HAND = 0.25, 0.08, 0.08
+"""Metres from a wrist at most to the side of what it touches, from before and from within, and by which that goes on
+above it: what a hand lies on or in does not stand before it."""
+FLAT = 0.35
+"""The cosine between a front and a look at it up to which it is the better seen, the straighter it is looked at."""
+FRONT = 2.0
+"""What it counts to see that well the front of what is touched."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +54,8 @@ class Shot:
 
     frame: int
     ghosts: tuple[int, ...] = ()
+    touch: tuple[int, int] | None = None
+    """The frame in which something is touched, and the wrist that does it."""
 
 
 def choose_frames(motion: Motion, joints: NDArray[np.floating], start: int, stop: int, skill: Skill) -> Shot:
@@ -55,7 +63,8 @@ def choose_frames(motion: Motion, joints: NDArray[np.floating], start: int, stop
     if skill is Skill.LOCO:
         return _along_the_way(motion.root_positions, start, stop)
     if skill is Skill.TOUCH:
-        return _at_full_reach(joints, start, stop)
+        blow = Blow.of(np.asarray(joints, dtype=np.float64), start, stop)
+        return _at_full_reach(joints, start, stop) if blow is None else _at_height(joints, blow)
     height = joints[start:stop, INDEX["head"], 1]
     left = np.abs(height - np.median(height[-8:]))  # metres the head has yet to go down or up
     if left.max() < 0.1:
@@ -77,15 +86,22 @@ def _along_the_way(roots: NDArray[np.floating], start: int, stop: int) -> Shot:
     return Shot(frames[0], tuple(sorted(set(frames[1:]))))
 
 
+def _at_height(joints: NDArray[np.floating], blow: Blow) -> Shot:
+    """A blow where its hand is the higher of drawn and there, with a ghost of the other: nobody sees one in a hand that
+    lies where it hit."""
+    low, high = sorted((blow.drawn, blow.hit), key=lambda frame: float(joints[frame, blow.hand, 1]))
+    return Shot(high, (low,), (blow.hit, blow.hand))
+
+
 def _at_full_reach(joints: NDArray[np.floating], start: int, stop: int) -> Shot:
-    reach = np.linalg.norm(joints[start:stop, HANDS] - joints[start:stop, _SHOULDERS], axis=-1)
-    level = np.linalg.norm((joints[start:stop, HANDS] - joints[start:stop, :1])[..., [0, 2]], axis=-1)
-    score = (reach + 2.0 * level).max(axis=1)
-    longest = np.flatnonzero(score > score.max() - 0.02)
+    scores = from_hanging(np.asarray(joints[start:stop]))  # (frames, hands)
+    score = scores.max(axis=1)
+    longest = np.flatnonzero(score > score.max() - 0.08)
     frame = int(longest[len(longest) // 2])
+    touch = start + frame, HANDS[int(scores[frame].argmax())]
     pelvis = joints[start:stop, 0][:, [0, 2]]
     away = np.flatnonzero(np.linalg.norm(pelvis[:frame] - pelvis[frame], axis=1) > STRIDE)
-    return Shot(start + frame, (start + int(away[-1]),) if len(away) else ())
+    return Shot(start + frame, (start + int(away[-1]),) if len(away) else (), touch)
 
 
 def choose_camera(
@@ -96,8 +112,9 @@ def choose_camera(
     aspect: float,
     held: NDArray[np.floating] | None = None,
 ) -> Camera:
-    """A camera about 20 degrees above with all poses in the picture, no furniture in the way and the face in view; of
-    two like ones the one before which what is `held` there (N, 3) lies nearer than the body."""
+    """A camera about 20 degrees above with all poses in the picture, no furniture in the way, the face in view and the
+    front of what is touched; of two like ones the one before which what is `held` there (N, 3) lies nearer than the
+    body."""
     poses = np.asarray(joints[[shot.frame, *shot.ghosts]], dtype=np.float64)
     low, high = poses.min(axis=(0, 1)), poses.max(axis=(0, 1)) + np.array([0, 0.12, 0])
     low[1] = min(low[1], 0.0)
@@ -114,7 +131,25 @@ def choose_camera(
     if home is not None:
         sight = Sight.at(home, (x, z), distance + 1.0)
         wanted += [sight.score(camera, poses[:1]) for camera in cameras]
+        front = None if shot.touch is None else sight.front(np.asarray(joints[shot.touch], dtype=np.float64))
+        if front is not None:
+            wanted += [FRONT * front.seen(camera) for camera in cameras]
     return cameras[int(np.argmax(np.round(wanted, 4)))]
+
+
+@dataclass(frozen=True)
+class Front:
+    """What a hand touches that stands up before it: the door of a cabinet, a wall."""
+
+    place: Array
+    """Of the hand. (3,)."""
+    outward: Array
+    """From it to where one sees it. (3,)."""
+
+    def seen(self, camera: Camera) -> float:
+        """How well a camera sees it: 1 for well, 0 for edgewise, less from behind."""
+        way = np.asarray(camera.eye) - self.place
+        return float(np.clip(way @ self.outward / np.linalg.norm(way) / FLAT, -1.0, 1.0))
 
 
 @dataclass(frozen=True)
@@ -124,8 +159,10 @@ class Sight:
     home: Home
     room: int | None
     """That of the place."""
+    pieces: tuple[Placed, ...]
+    """Furniture,"""
     near: Boxes
-    """Furniture."""
+    """and its parts."""
     sides: tuple[Side, ...]
     """Walls."""
 
@@ -134,12 +171,12 @@ class Sight:
         """Around a place [x, z], with the furniture within reach (metres)."""
         near = tuple(o for o in home.objects if np.hypot(o.position[0] - place[0], o.position[2] - place[1]) < reach)
         sides = tuple(side for wall in home.walls if (side := Side.of(wall, home)) is not None)
-        return Sight(home, home.room_at(place), Boxes.of(near), sides)
+        return Sight(home, home.room_at(place), near, Boxes.of(near), sides)
 
     def score(self, camera: Camera, poses: Array) -> float:
         """How well a camera shows poses (P, 22, 3), whichever side of them it sees."""
         eye = np.asarray(camera.eye)
-        seen = 1.0 - float(self.near.hide(eye, poses[:, SEEN + HANDS].reshape(-1, 3)).mean())
+        seen = 1.0 - float(self.near.hide(eye, poses[:, [*SEEN, *HANDS]].reshape(-1, 3)).mean())
         score = HIDDEN * seen + INDOORS * self.indoors(camera) - BLOCKED * self.blocked(camera)
         return score - AT_WINDOW * self._at_a_window(eye)
 
@@ -153,6 +190,18 @@ class Sight:
         free = 1.0 - float(self.near.hide(eye, corners).mean())
         return free * float(np.sqrt(np.clip(abs(across), 0.0, 1.0)))
 
+    def front(self, hand: Array) -> Front | None:
+        """What a hand (3,) touches, if that stands up before it."""
+        here = hand[[0, 2]]
+        walls = [(side.distance(here), -np.insert(side.outward, 1, 0.0)) for side in self.sides if side.faces(here)]
+        tall = [
+            _side_of(one, hand)
+            for one in self.pieces
+            if one.position[1] < hand[1] < one.position[1] + one.size[1] - ABOVE_HAND
+        ]
+        away, outward = min([*tall, *walls], key=lambda one: one[0], default=(np.inf, np.zeros(3)))
+        return Front(hand, outward) if away < NEAR_HAND else None
+
     def blocked(self, camera: Camera) -> bool:
         """Whether the eye is within furniture, or right before some."""
         eye = np.asarray(camera.eye)
@@ -165,6 +214,16 @@ class Sight:
     def _at_a_window(self, eye: Array) -> bool:
         """Whether it is so near to a wall, on its room's side, that curtains may hang before it."""
         return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in self.sides)
+
+
+def _side_of(placed: Placed, hand: Array) -> tuple[float, Array]:
+    """How far before the nearest side of a piece of furniture a hand (3,) is, infinitely far where it is in it, and
+    which way that side looks. (3,)."""
+    here = placed.to_local(hand) * [1.0, 0.0, 1.0]
+    out = np.abs(here) - np.array([placed.size[0], np.inf, placed.size[2]]) / 2
+    side = np.arange(3) == out.argmax()
+    outward = placed.to_world(side * np.sign(here)) - np.asarray(placed.position)
+    return np.inf if out.max() < -IN_IT else float(np.linalg.norm(np.maximum(out, 0.0))), outward
 
 
 def liking(motion: Motion, shot: Shot) -> Array:

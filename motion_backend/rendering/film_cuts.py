@@ -17,6 +17,7 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Emotion, Motion, PhaseKind
 from motion_backend.props import PropTrack
 from motion_backend.rendering.film_edit import FilmEdit, Frames
+from motion_backend.rendering.hand_deed import HANDS, Blow, from_hanging
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
@@ -34,17 +35,18 @@ STILL: Final = 0.3
 """Metres that a face moves in that while: a camera that stands still would lose it."""
 HELD: Final = 0.5
 """The same of a hand that touches."""
+HELD_SECONDS: Final = 1.0
+"""For which something is in a hand that must be seen."""
 IN_HAND: Final = 0.25
 """Metres from the middle of a thing to a wrist that has a part in holding it."""
 TO_HEAD: Final = 0.30
 """Metres between a wrist and the head of who telephones, drinks or eats."""
-HANDS: Final = (INDEX["left_wrist"], INDEX["right_wrist"])
+REBOUND: Final = 0.3
+"""Seconds after a blow that belong to it."""
 BOTH: Final = 0.8
 """The share of the one hand's way from hanging from which the other one has a part in it too."""
 LYING: Final = 0.5
 """How upright a pelvis is at most, as the height of its own up, of who lies."""
-_ELBOWS: Final = (INDEX["left_elbow"], INDEX["right_elbow"])
-_SHOULDERS: Final = (INDEX["left_shoulder"], INDEX["right_shoulder"])
 _HEAD: Final = INDEX["head"]
 
 
@@ -156,6 +158,8 @@ class _Finder:
         else the hands in which something is."""
         if self._lies(start, stop):
             return self._face(start, stop, changed)
+        if self._strikes(start, stop):
+            return None  # A blow is seen from where the hand is drawn to what it hits.
         return self._touch(start, stop) or self._face(start, stop, changed) or self._held(start, stop)
 
     def _lies(self, start: int, stop: int) -> bool:
@@ -167,34 +171,40 @@ class _Finder:
 
     def deed(self, start: int, stop: int) -> Framing | None:
         """The frames in which something is touched, else those in which it is in hand, and the hands that do so."""
-        return self.reach(start, stop) or next(self._holding(start, stop), None)
+        return self.reach(start, stop) or next(self._holding(start, stop, HELD_SECONDS), None)
 
     def reach(self, start: int, stop: int) -> Framing | None:
-        """The frames in which something is touched, and with which hands."""
-        touches = [p for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop and p.stop > start]
-        if not touches:
+        """The frames in which something is touched, or in which a hand is drawn and hits it, and with which hands."""
+        touched = self._touched(start, stop)
+        if touched is None:
             return None
-        first, last = max(start, touches[0].start), min(stop, touches[-1].stop)
-        away = self._from_hanging(first, last)
+        first, last = touched
+        blow = Blow.of(self.joints, first, last)
+        if blow is not None:
+            return Framing(
+                blow.drawn, min(blow.hit + round(REBOUND * self.motion.fps), last), Subject.HANDS, (blow.hand,)
+            )
+        away = from_hanging(self.joints[first:last])
         hand = int(away.max(axis=0).argmax())
         there = np.flatnonzero(away[:, hand] > away[:, hand].max() - 0.08)
         hands = HANDS if away[there].min(axis=1).mean() > BOTH * away.max() else (HANDS[hand],)
         return Framing(first + int(there[0]), first + int(there[-1]) + 1, Subject.HANDS, hands)
+
+    def _touched(self, start: int, stop: int) -> Frames | None:
+        """From where to where something is touched in some frames."""
+        touches = [p for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop and p.stop > start]
+        return (max(start, touches[0].start), min(stop, touches[-1].stop)) if touches else None
+
+    def _strikes(self, start: int, stop: int) -> bool:
+        """Whether there is a blow in some frames."""
+        touched = self._touched(start, stop)
+        return touched is not None and Blow.of(self.joints, *touched) is not None
 
     def _touch(self, start: int, stop: int) -> Framing | None:
         reach = self.reach(start, stop)
         if reach is None:
             return None
         return self._around(start, stop, (reach.start + reach.stop - 1) // 2, Subject.HANDS, reach.hands, HELD)
-
-    def _from_hanging(self, first: int, last: int) -> Array:
-        """How far each hand is from where it would hang (metres): a hand that touches is, bent or stretched, and one
-        that hangs beside it is not, though its arm may be the longer. (last - first, 2)."""
-        joints = self.joints[first:last]
-        shoulders, elbows, wrists = joints[:, _SHOULDERS], joints[:, _ELBOWS], joints[:, HANDS]
-        length = np.linalg.norm(elbows - shoulders, axis=-1) + np.linalg.norm(wrists - elbows, axis=-1)
-        hanging = shoulders - length[..., None] * np.array([0.0, 1.0, 0.0])
-        return np.asarray(np.linalg.norm(wrists - hanging, axis=-1))
 
     def _face(self, start: int, stop: int, changed: bool) -> Framing | None:
         near = np.linalg.norm(self.joints[start:stop, HANDS] - self.joints[start:stop, [_HEAD]], axis=-1) < TO_HEAD
@@ -210,11 +220,11 @@ class _Finder:
         hands = tuple(np.asarray(HANDS)[busy].tolist())
         return self._around(start, stop, middle, Subject.FACE, hands, STILL)
 
-    def _holding(self, start: int, stop: int) -> Iterator[Framing]:
-        """Frames in which something is in some hands for a while."""
+    def _holding(self, start: int, stop: int, seconds: float) -> Iterator[Framing]:
+        """Frames in which something is in some hands for so long."""
         for track in self.props:
             first, last = max(start, track.start), min(stop, track.stop)
-            if last - first < CLOSE_SECONDS * self.motion.fps:
+            if last - first < seconds * self.motion.fps:
                 continue
             there = track.positions[first - track.start : last - track.start]
             away = np.linalg.norm(self.joints[first:last, HANDS] - there[:, None], axis=-1).mean(axis=0)
@@ -223,7 +233,7 @@ class _Finder:
 
     def _held(self, start: int, stop: int) -> Framing | None:
         """The hands, where something is in them for most of a while."""
-        for held in self._holding(start, stop):
+        for held in self._holding(start, stop, CLOSE_SECONDS):
             middle = (held.start + held.stop) // 2
             found = self._around(start, stop, middle, Subject.HANDS, held.hands, HELD)
             if found is not None and held.start <= found.start and found.stop <= held.stop:

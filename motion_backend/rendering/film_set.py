@@ -42,7 +42,7 @@ class FilmSet:
         from scene_graphs.meshes.interior_mesh import base_mesh
 
         mesh = base_mesh(home)
-        base = Solid(mesh.vertices, mesh.faces, mesh.color)
+        base = Solid(mesh.vertices, mesh.faces, mesh.color, outside=True)
         return FilmSet(home, tuple(home_props(home)), base, float(mesh.vertices[:, 1].min()))
 
     def seen(self, camera: Camera, joints: Array) -> Sequence[Solid]:
@@ -58,4 +58,4 @@ class FilmSet:
     def _ground(self, camera: Camera) -> Solid:
         x, _, z = camera.target
         corners = [(x + a * GROUND, self.low, z + b * GROUND) for a, b in ((-1, -1), (-1, 1), (1, 1), (1, -1))]
-        return Solid(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]]), GROUND_COLOR)
+        return Solid(np.array(corners), np.array([[0, 1, 2], [0, 2, 3]]), GROUND_COLOR, outside=True)

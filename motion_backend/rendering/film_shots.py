@@ -18,9 +18,9 @@ from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points, prop_tracks
-from motion_backend.rendering.camera import FOV, YAWS, Shot, liking
+from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
-from motion_backend.rendering.film_edit import FilmEdit
+from motion_backend.rendering.film_edit import FilmEdit, Frames
 from motion_backend.rendering.film_entrance import Entrance
 from motion_backend.rendering.film_outlook import Outlook
 from motion_backend.rendering.film_set import FilmSet
@@ -58,19 +58,21 @@ FAR: Final = 0.14
 """What a metre of distance counts: faces are seen from near."""
 REPEATED: Final = 1.6
 """What a jump cut counts."""
-REVERSED: Final = 0.9
+REVERSED: Final = 3.0
 """What it counts to go on from the other side, where who went to the right goes to the left."""
-SIDE: Final = 0.3
-"""From how much of a body's turn across the picture on it has a side."""
+SIDE: Final = 0.25
+"""From how much of its way, or of where it is turned, across the picture on a body has a side."""
+ON_THE_WAY: Final = (8, 0.15)
+"""Frames before and after a cut, and the metres from which on a body that goes so far in them is on a way."""
 FACED, WIDEST = 1.2, 1.2
 """What it counts to see a face, best at a quarter turned, and the turn in radians from which it is none."""
 WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
 """The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
 WATCHED: Final = 3.0
 """What it counts to see the face of who does not walk, in a shot of the whole,"""
-QUARTER, PROFILE = (0.8, 1.6), (1.3, 1.8)
-"""from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, and of who
-does."""
+QUARTER, PROFILE, BEYOND = (0.8, 1.6), (1.3, 1.8), (2.0, 2.5)
+"""from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, of who
+does, and of who does it to what stands before them."""
 HAND_HIDDEN: Final = 2.0
 """What it counts to have furniture before the hands that do something."""
 EVERY: Final = 4
@@ -85,6 +87,16 @@ AT_DOOR: Final = 3.0
 """What it counts in the first shot to see the door by which somebody comes in."""
 TO_WINDOW: Final = 4.0
 """What it counts to see the window that somebody looks out of."""
+TO_FRONT: Final = 3.0
+"""What it counts to see the front of what is touched well,"""
+FRONTAL: Final = 0.4
+"""and how well it must be seen, if any camera sees it so: from the side a cabinet is a board that hides the hand."""
+ASIDE: Final = (0.19, 0.12, 0.06)
+"""Radians by which a camera is turned to the side, at most so that a body that was in the middle is at a third."""
+OFF_CENTRE: Final = 0.2
+"""What that counts."""
+EXACT: Final = 0.02
+"""Metres that what was just within a picture may be beyond, where it is turned."""
 TRIES: Final = 12
 """Views of a shot of which pictures are looked at."""
 
@@ -169,14 +181,17 @@ class _Director:
         bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
         if self._outlook(start, stop) is not None:
             bodies = replace(bodies, face=None)
-        found: list[tuple[tuple[tuple[bool, bool, bool], float], FilmShot]] = []
-        for view in views[:TRIES]:
-            scene = self.set.seen(view.camera, self.joints[start:stop])
-            look = bodies.look(scene, view.camera)
-            worth = view.score + look.appeal if any(look.rank) else look.shown
-            found.append(((look.rank, worth), FilmShot(start, stop, view.camera, scene, framing.subject)))
-        (rank, _), best = max(found, key=lambda one: one[0])
-        return best, rank[0]
+        found = [self._looked(framing, bodies, view) for view in views[:TRIES]]
+        best = max(found, key=lambda one: one.worth)
+        aside = [self._looked(framing, bodies, view) for view in best.view.aside(self.aspect)]
+        best = max([best, *aside], key=lambda one: one.worth)
+        return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), best.worth[0][0]
+
+    def _looked(self, framing: Framing, bodies: Appearances, view: _View) -> _Looked:
+        """A view of which a small picture was looked at."""
+        scene = self.set.seen(view.camera, self.joints[framing.start : framing.stop])
+        look = bodies.look(scene, view.camera)
+        return _Looked((look.rank, view.score + look.appeal if any(look.rank) else look.shown), view, scene)
 
     def _views(self, framing: Framing, before: FilmShot | None) -> list[_View]:
         """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet, with the
@@ -190,9 +205,11 @@ class _Director:
         ]
         openings = [(one, worth) for one, worth in shown if one is not None]
         points = np.concatenate([self._reached(start, stop), *(one.corners for one, _ in openings)])
-        watched = np.empty(0, np.int64) if shown[1][0] is not None else self._watched(frames)
+        watched = np.empty(0, np.int64) if shown[1][0] is not None else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
+        front = self._front(framing, sight)
+        widest = BEYOND if front is not None else PROFILE if framing.deed else QUARTER
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
         scored = []
         for pitch in PITCHES:
@@ -201,12 +218,14 @@ class _Director:
                 score = float(liked[index]) + sight.score(camera, poses)
                 score -= FAR * _distance(camera)
                 if len(watched):
-                    score += WATCHED * _is_faced(ahead, -camera.axes[2], PROFILE if framing.deed else QUARTER)
+                    score += WATCHED * _is_faced(ahead, -camera.axes[2], widest)
+                if front is not None:
+                    score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
                     score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), self._doing(framing)).mean())
                 score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
-                scored.append(_View(score - self._broken(camera, before, start), camera))
-        return _sorted(scored)
+                scored.append(_View(score - self._broken(camera, before, start), camera, points))
+        return _sorted(_frontal(scored, front))
 
     def _reached(self, start: int, stop: int) -> Array:
         """Where joints and the crown go in some frames, at the height of a jump too. (N, 3)."""
@@ -215,15 +234,23 @@ class _Director:
         frames = np.unique([*frames.tolist(), high, stop - 1])
         return np.concatenate([self.joints[frames].reshape(-1, 3), _crowns(self.joints[frames], self.turns[frames])])
 
-    def _watched(self, frames: NDArray[np.int64]) -> NDArray[np.int64]:
-        """Those of some frames in which nobody walks."""
+    def _watched(self, frames: NDArray[np.int64], deed: Frames | None) -> NDArray[np.int64]:
+        """Those of some frames in which nobody walks, or hands do what it is about."""
+        first, stop = deed or (0, 0)
         walks = [p for p in self.motion.phases if p.kind is PhaseKind.WALK]
-        return np.array([f for f in frames.tolist() if not any(p.start <= f < p.stop for p in walks)], np.int64)
+        stands = [f for f in frames.tolist() if first <= f < stop or not any(p.start <= f < p.stop for p in walks)]
+        return np.array(stands, np.int64)
 
     def _doing(self, framing: Framing) -> Array:
         """Where the hands are that do something, in the midst of it. (H, 3)."""
         start, stop = framing.deed or (framing.start, framing.stop)
         return self.joints[(start + stop - 1) // 2, list(framing.hands)]
+
+    def _front(self, framing: Framing, sight: Sight) -> Front | None:
+        """Of what is touched, if that stands up before the hand, in the last frame of its deed."""
+        _, stop = framing.deed or (framing.start, framing.stop)
+        touched = any(p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop for p in self.motion.phases)
+        return sight.front(self.joints[stop - 1, framing.hands[0]]) if framing.hands and touched else None
 
     def _outlook(self, start: int, stop: int) -> Outlook | None:
         """The window that the body looks out of in some frames."""
@@ -242,6 +269,7 @@ class _Director:
         points = np.concatenate([_head(poses, turns), hands, *held])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
+        front = self._front(close, sight)
         upright = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
         steep = STEEP[0 if upright else 1]
         scored = []
@@ -256,6 +284,8 @@ class _Director:
                 score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * pitch
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
+                    score += TO_FRONT * front.seen(camera) if front is not None else 0.0
+                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), hands).mean())
                     score -= ALONG * max(abs(float(arm @ towards)) for arm in _directions(poses, close.hands))
                 scored.append(_View(score - self._broken(camera, before, close.start), camera))
         return _sorted(scored)
@@ -269,8 +299,13 @@ class _Director:
         return REPEATED * are_alike(camera, before.camera) + REVERSED * turned
 
     def _across(self, camera: Camera, frame: int) -> float:
-        """How far to the right of a picture the body is turned, -1 to 1."""
-        return float(rotations.rotate(self.turns[frame, 0], np.array([0.0, 0.0, 1.0])) @ camera.axes[0])
+        """How far to the right of a picture the body goes, or is turned if it does not go, -1 to 1."""
+        frames, least = ON_THE_WAY
+        first, last = self.joints[[max(frame - frames, 0), min(frame + frames, len(self.joints) - 1)], 0]
+        way = (last - first) * [1.0, 0.0, 1.0]
+        far = float(np.linalg.norm(way))
+        ahead = rotations.rotate(self.turns[frame, 0], np.array([0.0, 0.0, 1.0])) if far < least else way / far
+        return float(ahead @ camera.axes[0])
 
 
 class _View(NamedTuple):
@@ -278,6 +313,25 @@ class _View(NamedTuple):
 
     score: float
     camera: Camera
+    points: Array = np.empty((0, 3))
+    """What is in its picture wherever it is turned to, (N, 3); none where it is not turned."""
+
+    def aside(self, aspect: float) -> Iterator[_View]:
+        """The same turned to either side as far as it goes, up to where the body has a third of the picture before or
+        behind it: there is less of what is outside of a home in one of them."""
+        for side in (-1, 1) if len(self.points) else ():
+            cameras = (_turned(self.camera, side * turn) for turn in ASIDE)
+            turned = next((camera for camera in cameras if _holds(camera, self.points, aspect)), None)
+            if turned is not None:
+                yield _View(self.score - OFF_CENTRE, turned)
+
+
+class _Looked(NamedTuple):
+    """A view, how good its picture is, and what it sees of the home."""
+
+    worth: tuple[tuple[bool, bool, bool], float]
+    view: _View
+    scene: Sequence[Solid]
 
 
 def _sampled(start: int, stop: int) -> NDArray[np.int64]:
@@ -287,6 +341,13 @@ def _sampled(start: int, stop: int) -> NDArray[np.int64]:
 def _middle(points: Array) -> tuple[float, float, float]:
     x, y, z = ((points.min(axis=0) + points.max(axis=0)) / 2).tolist()
     return x, y, z
+
+
+def _frontal(views: list[_View], front: Front | None) -> list[_View]:
+    """The views that show the front of what is touched, all where none does."""
+    if front is None:
+        return views
+    return [view for view in views if front.seen(view.camera) >= FRONTAL] or views
 
 
 def _sorted(views: Sequence[_View]) -> list[_View]:
@@ -345,6 +406,22 @@ def _fitted(yaw: float, pitch: float, points: Array, aspect: float, nearest: flo
     # A point is within the picture where its distance to the axis, with skin, is at most `wide` times its depth.
     asked = [(np.abs(up) + MARGIN) / wide - ahead, (np.abs(across) + MARGIN) / (wide * aspect) - ahead, MARGIN - ahead]
     return orbit(target, max(nearest, float(np.max(asked))), yaw, pitch, FOV)
+
+
+def _turned(camera: Camera, radians: float) -> Camera:
+    """A camera turned to its left where it stands."""
+    way = rotations.rotate(rotations.yaw_to_quat(radians), np.subtract(camera.target, camera.eye))
+    x, y, z = (np.asarray(camera.eye) + way).tolist()
+    return replace(camera, target=(x, y, z))
+
+
+def _holds(camera: Camera, points: Array, aspect: float) -> bool:
+    """Whether all points (N, 3), with the skin around them, are well within the picture."""
+    across, up, ahead = np.moveaxis(camera.view(points), -1, 0)
+    wide = np.tan(FOV / 2) * FRAME * ahead
+    return bool(
+        (np.abs(up) + MARGIN <= wide + EXACT).all() and (np.abs(across) + MARGIN <= wide * aspect + EXACT).all()
+    )
 
 
 def _distance(camera: Camera) -> float:

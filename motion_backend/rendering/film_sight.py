@@ -5,7 +5,7 @@ what is nearest in the picture.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final
 
@@ -18,7 +18,7 @@ from motion_backend.motion import FPS, Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points
 from motion_backend.rendering.film_cuts import Framing, Subject
 from motion_backend.rendering.rasterizer import Camera, Real
-from motion_backend.rendering.renderer import Solid, nearness_of
+from motion_backend.rendering.renderer import Solid, nearest_of
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
@@ -40,7 +40,7 @@ ENOUGH: Final = 0.96
 """The share of looks in which it is."""
 HALF_HIDDEN: Final = 0.6
 """The same, if that is the price for a face."""
-FACED: Final = {Subject.BODY: 0.15, Subject.FACE: 0.30, Subject.HANDS: 0.05}
+FACED: Final = {Subject.BODY: 0.12, Subject.FACE: 0.30, Subject.HANDS: 0.12}
 """How much of a face is to be seen, as a share of what is seen of it from the front: a profile is 0.4."""
 FRONT: Final = 0.40
 """How far forward the skin of a face looks, at least: the cosine."""
@@ -63,13 +63,13 @@ TO_FACE, TO_DEED = 3.0, 2.5
 """What it counts to see all of a face that must be seen, and of the hands that do what is done."""
 VEILED: Final = 3.0
 """What it counts to have all of a body behind things for a second: behind a thin lamp is a fourth of it."""
-VOID: Final = 5.0
+VOID: Final = 8.0
 """What it counts to have nothing but what is outside of a home in the picture."""
 BEFORE: Final = 0.86
 """Up to which share of the way to the body something is in the foreground,"""
 LOW, TALL = 0.3, 0.8
 """from which height on (metres), and from which wholly: a rug is not, a bed hardly, a wardrobe is."""
-FOREGROUND: Final = 4.0
+FOREGROUND: Final = 10.0
 """What it counts to have nothing but foreground in the picture."""
 RING: Final = (1.15, 2.3)
 """From how many radii of a head on, and up to how many, what is behind it is looked at,"""
@@ -154,7 +154,7 @@ class Appearances:
         hand, doing = _doing(mesh.joints[:, 0], framing, frames)
         return Appearances(
             vertices, normals, areas, part, head, legs, aspect, mesh.faces, framing.subject,
-            head & (mesh.normals[:, 2] > FRONT), _watched(motion, frames), hand, doing, held,
+            head & (mesh.normals[:, 2] > FRONT), _watched(motion, framing, frames), hand, doing, held,
         )  # fmt: skip
 
     @cached_property
@@ -162,158 +162,177 @@ class Appearances:
         """Pixels of a picture that is looked at."""
         return round(HEIGHT * self.aspect), HEIGHT
 
-    def near(self, scene: Sequence[Solid], camera: Camera) -> Real:
-        """How near what is nearest of a home is, minus infinity for nothing. (height, width)."""
-        return nearness_of(scene, camera, self.size)
+    def look(self, scene: Sequence[Solid], camera: Camera) -> Look:
+        """What a camera shows of the bodies in a home."""
+        return self._picture(scene, camera).look()
 
     def shares(self, scene: Sequence[Solid], camera: Camera) -> Array:
         """How much of each body's near side, and of its part's, is in the picture with nothing before it. (T, 2).
 
         What is looked at from near other limbs may hide as well.
         """
-        return self._shares(self.near(scene, camera), camera)
+        return self._picture(scene, camera).shares
 
-    def _shares(self, near: Real, camera: Camera) -> Array:
-        shares = np.zeros((len(self.vertices), 2))
-        for frame, (points, normals) in enumerate(zip(self.vertices, self.normals, strict=True)):
+    def _picture(self, scene: Sequence[Solid], camera: Camera) -> _Picture:
+        return _Picture(self, camera, *nearest_of(scene, camera, self.size))
+
+
+@dataclass(frozen=True)
+class _Picture:
+    """Some bodies in a home as a camera sees them."""
+
+    bodies: Appearances
+    camera: Camera
+    near: Real
+    """How near what is nearest of the home is, minus infinity for nothing. (height, width)."""
+    inside: NDArray[np.bool_]
+    """Where that is not outside of it. (height, width)."""
+    drawn: dict[int, tuple[NDArray[np.float32], NDArray[np.int32]]] = field(default_factory=dict)
+    """Those that were drawn into it; see `_with_body`."""
+
+    def look(self) -> Look:
+        """What it shows of the bodies."""
+        bodies, camera, shares = self.bodies, self.camera, self.shares
+        seen = (shares >= ASKED[bodies.subject]).all(axis=1)
+        before = float((self.near > 1.0 / (MUCH * np.linalg.norm(np.subtract(camera.eye, camera.target)))).mean())
+        if bodies.subject is Subject.FACE:
+            before += self._legs_share()
+        shown = float(np.mean(seen)) - max(before - CROWDED, 0.0)
+        body, part, held = APPEALS
+        appeal = float(shares.mean(axis=0) @ (body, part)) + held * self._held_share()
+        appeal -= FOREGROUND * self._foreground() + CLUTTER * self._clutter()
+        appeal -= VOID * float((~self.inside).mean()) + VEILED * self._veiled()
+        appeal += TO_DEED * self._deed_share()
+        face = self._face_share()
+        if face is None:
+            return Look(shown, appeal)
+        enough = BESIDE_DEED if bodies.doing is not None and bodies.doing.any() else ENOUGH_FACE
+        return Look(shown, appeal + TO_FACE * min(face / enough, 1.0), face >= FACED[bodies.subject])
+
+    @cached_property
+    def shares(self) -> Array:
+        """As `Appearances.shares`."""
+        bodies, camera = self.bodies, self.camera
+        shares = np.zeros((len(bodies.vertices), 2))
+        for frame, (points, normals) in enumerate(zip(bodies.vertices, bodies.normals, strict=True)):
             some, eye = points[::SPARSE], np.asarray(camera.eye, dtype=np.float32)
             turned = np.einsum("vk,vk->v", normals[::SPARSE], eye - some) > 0
-            viewed = camera.view(some[turned].astype(np.float64))
-            viewed[:, 2] = np.maximum(viewed[:, 2] - SLACK[self.subject], NEAREST)
-            before = near if self.subject is Subject.BODY else self._with_body(near, points, camera)[0]
-            seen = self._free(before, camera.project(viewed, self.size))
-            area, own = self.areas[::SPARSE][turned], self.part[::SPARSE][turned]
+            before = self.near if bodies.subject is Subject.BODY else self._with_body(frame)[0]
+            seen = self._seen(before, some[turned].astype(np.float64), SLACK[bodies.subject])
+            area, own = bodies.areas[::SPARSE][turned], bodies.part[::SPARSE][turned]
             for part, weights in enumerate((area, area * own)):
                 shares[frame, part] = weights @ seen / max(weights.sum(), 1e-9)
         return shares
 
-    def _with_body(
-        self, near: Real, points: NDArray[np.float32], camera: Camera
-    ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-        """How near what is nearest is with a body (V, 3) too, and which triangle of the body it is, or -1.
+    def _with_body(self, frame: int) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+        """How near what is nearest is with a body too, and which triangle of the body it is, or -1.
         (height, width) each."""
         from motion_backend.rendering.depth_buffer import draw_body
 
-        best, nearest = near.astype(np.float32), np.full(near.shape, -1, dtype=np.int32)
-        drawn = camera.project(camera.view(points.astype(np.float64)), self.size)
-        if drawn[:, 2].min() > 0:
-            draw_body(drawn, self.faces, nearest, best)
-        return best, nearest
+        if frame not in self.drawn:
+            best, nearest = self.near.astype(np.float32), np.full(self.near.shape, -1, dtype=np.int32)
+            viewed = self.camera.view(self.bodies.vertices[frame].astype(np.float64))
+            points = self.camera.project(viewed, self.bodies.size)
+            if points[:, 2].min() > 0:
+                draw_body(points, self.bodies.faces, nearest, best)
+            self.drawn[frame] = best, nearest
+        return self.drawn[frame]
 
-    def _legs_share(self, near: Real, camera: Camera) -> float:
+    def _legs_share(self) -> float:
         """The share of the pictures that legs fill, in the mean."""
-        legs = np.append(self.legs[self.faces].all(axis=1), False)
-        return float(np.mean([legs[self._with_body(near, points, camera)[1]].mean() for points in self.vertices]))
+        legs = np.append(self.bodies.legs[self.bodies.faces].all(axis=1), False)
+        frames = range(len(self.bodies.vertices))
+        return float(np.mean([legs[self._with_body(frame)[1]].mean() for frame in frames]))
 
-    def look(self, scene: Sequence[Solid], camera: Camera) -> Look:
-        """What a camera shows of the bodies in a home."""
-        near = self.near(scene, camera)
-        shares = self._shares(near, camera)
-        seen = (shares >= ASKED[self.subject]).all(axis=1)
-        before = float((near > 1.0 / (MUCH * np.linalg.norm(np.subtract(camera.eye, camera.target)))).mean())
-        if self.subject is Subject.FACE:
-            before += self._legs_share(near, camera)
-        shown = float(np.mean(seen)) - max(before - CROWDED, 0.0)
-        body, part, held = APPEALS
-        appeal = float(shares.mean(axis=0) @ (body, part)) + held * self._held_share(near, camera)
-        appeal -= FOREGROUND * self._foreground(near, camera) + CLUTTER * self._clutter(near, camera)
-        appeal -= VOID * float((~(near > 0)).mean()) + VEILED * self._veiled(near, camera)
-        appeal += TO_DEED * self._deed_share(near, camera)
-        face = self._face_share(near, camera)
-        if face is None:
-            return Look(shown, appeal)
-        enough = BESIDE_DEED if self.doing is not None and self.doing.any() else ENOUGH_FACE
-        return Look(shown, appeal + TO_FACE * min(face / enough, 1.0), face >= FACED[self.subject])
-
-    def _face_share(self, near: Real, camera: Camera) -> float | None:
+    def _face_share(self) -> float | None:
         """How much of the face is seen in the mean of the frames in which it must be, as a share of what is from the
         front; None where it need not."""
-        if self.face is None or self.watched is None or not self.watched.any():
+        bodies = self.bodies
+        if bodies.face is None or bodies.watched is None or not bodies.watched.any():
             return None
-        where = np.flatnonzero(self.watched)[:: max(1, self.watched.sum() // LOOKS)]
-        weights, found = self.areas[self.face], []
-        for points, normals in zip(self.vertices[where], self.normals[where], strict=True):
-            own, before = points[self.face].astype(np.float64), self._with_body(near, points, camera)[0]
-            towards = np.asarray(camera.eye) - own
-            cosine = np.einsum("vk,vk->v", normals[self.face], towards) / np.linalg.norm(towards, axis=1)
-            seen = self._seen(before, own, camera, FACE_SLACK)
+        weights, found = bodies.areas[bodies.face], []
+        for frame in _some(bodies.watched):
+            own = bodies.vertices[frame][bodies.face].astype(np.float64)
+            towards = np.asarray(self.camera.eye) - own
+            cosine = np.einsum("vk,vk->v", bodies.normals[frame][bodies.face], towards)
+            cosine /= np.linalg.norm(towards, axis=1)
+            seen = self._seen(self._with_body(frame)[0], own, FACE_SLACK)
             found.append(float((weights * np.clip(cosine, 0.0, 1.0)) @ seen / weights.sum()) / STRAIGHT)
         return float(np.mean(found))
 
-    def _deed_share(self, near: Real, camera: Camera) -> float:
+    def _deed_share(self) -> float:
         """How much of the hands that do what is done is seen, with the body and all else that may be before them; 0
         where none does anything."""
-        if self.hand is None or self.doing is None or not self.hand.any() or not self.doing.any():
+        bodies = self.bodies
+        if bodies.hand is None or bodies.doing is None or not bodies.hand.any() or not bodies.doing.any():
             return 0.0
-        where = np.flatnonzero(self.doing)[:: max(1, self.doing.sum() // LOOKS)]
         found = []
-        for points in self.vertices[where]:
-            before = self._with_body(near, points, camera)[0]
-            own = points[self.hand].astype(np.float64)
-            found.append(float(self._seen(before, own, camera, SLACK[Subject.HANDS]).mean()))
+        for frame in _some(bodies.doing):
+            own = bodies.vertices[frame][bodies.hand].astype(np.float64)
+            found.append(float(self._seen(self._with_body(frame)[0], own, SLACK[Subject.HANDS]).mean()))
         # Of a hand that nothing hides the half that is turned away is.
         return min(2.0 * float(np.mean(found)), 1.0)
 
-    def _veiled(self, near: Real, camera: Camera) -> float:
+    def _veiled(self) -> float:
         """How much of a body things hide in the worst second."""
-        hidden = [
-            1.0 - float(self._seen(near, points[::SPARSE].astype(np.float64), camera, SLACK[Subject.BODY]).mean())
-            for points in self.vertices
+        return _worst(
+            [
+                1.0 - float(self._seen(self.near, points[::SPARSE].astype(np.float64), SLACK[Subject.BODY]).mean())
+                for points in self.bodies.vertices
+            ],
+            EVERY[self.bodies.subject],
+        )
+
+    def _held_share(self) -> float:
+        """How much of what is held is in the picture with nothing before it, in the mean and in the worst second; none
+        where nothing is held."""
+        shares = [
+            float(self._seen(self._with_body(frame)[0], held, SLACK[Subject.HANDS]).mean())
+            for frame, held in enumerate(self.bodies.held)
+            if len(held)
         ]
-        long = max(1, min(len(hidden), round(FPS / EVERY[self.subject])))
-        return float(np.convolve(hidden, np.full(long, 1.0 / long), "valid").max())
-
-    def _seen(self, before: Real, points: Array, camera: Camera, slack: float) -> NDArray[np.bool_]:
-        """Which points (N, 3) of a home are in the picture, and not so far behind what is nearest. (N,)."""
-        viewed = camera.view(points)
-        viewed[:, 2] = np.maximum(viewed[:, 2] - slack, NEAREST)
-        return self._free(before, camera.project(viewed, self.size))
-
-    def _held_share(self, near: Real, camera: Camera) -> float:
-        """How much of what is held is in the picture with nothing before it; none where nothing is held."""
-        if not any(map(len, self.held)):
+        if not shares:
             return 0.0
-        shares = []
-        for held, points in zip(self.held, self.vertices, strict=True):
-            if len(held):
-                before = self._with_body(near, points, camera)[0]
-                viewed = camera.view(held)
-                viewed[:, 2] = np.maximum(viewed[:, 2] - SLACK[Subject.HANDS], NEAREST)
-                shares.append(float(self._free(before, camera.project(viewed, self.size)).mean()))
-        return float(np.mean(shares))
+        return (
+            float(np.mean(shares)) + 1.0 - _worst([1.0 - share for share in shares], EVERY[self.bodies.subject])
+        ) / 2
 
-    def _free(self, before: Real, projected: Real) -> NDArray[np.bool_]:
-        """Which points (N, 3) of a picture are in it and not behind what is nearest. (N,)."""
-        width, height = self.size
-        x, y, nearness = np.moveaxis(projected, -1, 0)
+    def _seen(self, before: Real, points: Array, slack: float) -> NDArray[np.bool_]:
+        """Which points (N, 3) of a home are in the picture, and not so far behind what is nearest. (N,)."""
+        viewed = self.camera.view(points)
+        viewed[:, 2] = np.maximum(viewed[:, 2] - slack, NEAREST)
+        width, height = self.bodies.size
+        x, y, nearness = np.moveaxis(self.camera.project(viewed, (width, height)), -1, 0)
         inside = (x >= 0) & (x < width) & (y >= 0) & (y < height)
         column, row = (np.clip(value, 0, most - 1).astype(int) for value, most in ((x, width), (y, height)))
         return np.asarray(inside & (before[row, column] <= nearness))
 
-    def _foreground(self, near: Real, camera: Camera) -> float:
+    def _foreground(self) -> float:
         """The share of the picture that things between camera and body fill, those that stand high."""
-        width, height = self.size
-        middle = camera.view(self.vertices.reshape(-1, 3).mean(axis=0, dtype=np.float64))[2]
-        nearer = near > 1.0 / (BEFORE * max(float(middle), NEAREST))
+        (width, height), camera = self.bodies.size, self.camera
+        middle = camera.view(self.bodies.vertices.reshape(-1, 3).mean(axis=0, dtype=np.float64))[2]
+        nearer = self.near > 1.0 / (BEFORE * max(float(middle), NEAREST))
         if not nearer.any():
             return 0.0
         rows, _ = np.nonzero(nearer)
         slope = (0.5 * height - rows - 0.5) * 2.0 * np.tan(0.5 * camera.fov) / height
-        tall = camera.eye[1] + (slope * camera.axes[1, 1] + camera.axes[2, 1]) / near[nearer]
+        tall = camera.eye[1] + (slope * camera.axes[1, 1] + camera.axes[2, 1]) / self.near[nearer]
         return float(np.clip((tall - LOW) / (TALL - LOW), 0.0, 1.0).sum()) / (width * height)
 
-    def _clutter(self, near: Real, camera: Camera) -> float:
+    def _clutter(self) -> float:
         """How many edges of things there are about the head, beside and above it: 0 for none, 1 for a clutter."""
-        width, height = self.size
-        distance = 1.0 / np.maximum(near, 1e-3)
-        edges = np.zeros(near.shape, dtype=bool)
+        (width, height), camera, vertices = self.bodies.size, self.camera, self.bodies.vertices
+        distance = 1.0 / np.maximum(self.near, 1e-3)
+        edges = np.zeros(self.near.shape, dtype=bool)
         edges[:, 1:] |= np.abs(np.diff(distance, axis=1)) > JUMP * np.minimum(distance[:, 1:], distance[:, :-1])
         edges[1:] |= np.abs(np.diff(distance, axis=0)) > JUMP * np.minimum(distance[1:], distance[:-1])
         found = []
-        for points in self.vertices[:: max(len(self.vertices) // 3, 1)]:
-            head = points[self.head].astype(np.float64)
+        for points in vertices[:: max(len(vertices) // 3, 1)]:
+            head = points[self.bodies.head].astype(np.float64)
             middle, radius = head.mean(axis=0), float(np.ptp(head[:, 1])) / 2
-            x, y, nearness = camera.project(np.maximum(camera.view(middle), [-np.inf, -np.inf, NEAREST]), self.size)
+            x, y, nearness = camera.project(
+                np.maximum(camera.view(middle), [-np.inf, -np.inf, NEAREST]), (width, height)
+            )
             radius *= height / (2.0 * np.tan(0.5 * camera.fov)) * nearness
             across, down = np.arange(width) + 0.5 - x, np.arange(height)[:, None] + 0.5 - y
             away = np.hypot(across, down) / radius
@@ -322,13 +341,24 @@ class Appearances:
         return min(float(np.mean(found)) / CLUTTERED, 1.0)
 
 
-def _watched(motion: Motion, frames: NDArray[np.integer]) -> NDArray[np.bool_]:
-    """In which frames nobody walks; in none where that is but a moment. (T,)."""
-    still = ~np.any(
-        [(frames >= p.start) & (frames < p.stop) for p in motion.phases if p.kind is PhaseKind.WALK], axis=0
-    )
-    still = np.broadcast_to(still, frames.shape)
-    return still if still.mean() >= STANDS else np.zeros(len(frames), dtype=bool)
+def _some(wanted: NDArray[np.bool_]) -> list[int]:
+    """A few of the frames that are wanted (T,)."""
+    found: list[int] = np.flatnonzero(wanted)[:: max(1, wanted.sum() // LOOKS)].tolist()
+    return found
+
+
+def _worst(hidden: Sequence[float], every: int) -> float:
+    """How much is hidden in the worst second, of how much is in looks that are so many frames apart."""
+    long = max(1, min(len(hidden), round(FPS / every)))
+    return float(np.convolve(hidden, np.full(long, 1.0 / long), "valid").max())
+
+
+def _watched(motion: Motion, framing: Framing, frames: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """In which frames nobody walks, or hands do what it is about; in none where that is but a moment. (T,)."""
+    walks = [(frames >= p.start) & (frames < p.stop) for p in motion.phases if p.kind is PhaseKind.WALK]
+    first, stop = framing.deed or (0, 0)
+    watched = ~np.any([np.zeros(len(frames), dtype=bool), *walks], axis=0) | ((frames >= first) & (frames < stop))
+    return watched if watched.mean() >= STANDS else np.zeros(len(frames), dtype=bool)
 
 
 def _doing(

@@ -127,7 +127,7 @@ def home_props(home: Home) -> list[Prop]:
     from scene_graphs.meshes.interior_mesh import stump_meshes
 
     stumps = {
-        mesh.name.replace("stump", "wall"): Solid(mesh.vertices, mesh.faces, mesh.color, casts=False)
+        mesh.name.replace("stump", "wall"): Solid(mesh.vertices, mesh.faces, mesh.color, casts=False, outside=True)
         for mesh in stump_meshes(home)
     }
     sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]

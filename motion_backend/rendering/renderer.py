@@ -50,6 +50,8 @@ class Solid:
     """Quarters show: 0.25, 0.5, 0.75, 1."""
     casts: bool = True
     """Whether it casts a shadow."""
+    outside: bool = False
+    """Whether a picture that is full of it shows nothing of a home: the ground around it, a wall that is cut."""
 
 
 def render(
@@ -105,16 +107,18 @@ class Still:
         return Still(camera, nearness, lit, (maps[0], maps[1]))
 
 
-def nearness_of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -> Array:
-    """How near what is nearest is in every pixel, minus infinity for nothing or glass. (height, width)."""
+def nearest_of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -> tuple[Array, NDArray[np.bool_]]:
+    """How near what is nearest is in every pixel, minus infinity for nothing or glass, and whether that is something
+    that does not lie outside. (height, width) each."""
     from motion_backend.rendering.depth_buffer import draw
 
-    solid = [np.asarray(one.vertices, dtype=np.float64)[one.faces] for one in solids if one.opacity >= 1]
+    solid = sorted((one for one in solids if one.opacity >= 1), key=lambda one: one.outside)
     nearest, best = empty_buffers(size)
-    if solid:
-        screen = camera.project(clip(camera.view(np.concatenate(solid)), camera)[0], size)
-        draw(screen, np.full(len(screen), 4, dtype=np.int64), 0, nearest, best)
-    return best
+    corners = [np.asarray(one.vertices, dtype=np.float64)[one.faces] for one in solid]
+    viewed, sources = clip(camera.view(np.concatenate([np.zeros((0, 3, 3)), *corners])), camera)
+    draw(camera.project(viewed, size), np.full(len(viewed), 4, dtype=np.int64), 0, nearest, best)
+    inside = sum(len(one.faces) for one in solid if not one.outside)
+    return best, np.append(sources < inside, False)[nearest]
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ import numpy as np
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
+from planner_service.composition.earlier_deeds import with_its_noun
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
@@ -144,7 +145,7 @@ def _with_reasons(
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
         kind = "feeling" if index in writer.moody else one.beat.kind
-        besides = _besides(index, one, writer, keyframes) if known else ()
+        besides = _besides(index, with_its_noun(index, read)[0], writer, keyframes) if known else ()
         beats.append(one.beat.model_copy(update={"why": why, "kind": kind, "unshown": besides}))
     return tuple(beats)
 

@@ -63,8 +63,8 @@ _MAX_FRAGMENT: Final = 4
 _NOT_NOW: Final = frozenset(("before", "after", "until", "since", "during", "without", "no", "not", "never", "nothing"))
 """Words before what is not done, or not yet."""
 _GONE: Final = re.compile(
-    r"^(?:\w+ )?(?:out (?:of |through )?the (?:\w+ )?(?:door|house|flat)|off to (?:the )?\w+|back home|home again"
-    r"|back (?:for|to|into) the \w+|(?:in|on)?to the (?:kitchen|bedroom|living room|bathroom|study|hall|door|window))$",
+    r"^(?:\w+ )?(?:out (?:of |through )?the (?:\w+ )?(?:door|house|flat)|off to (?:the )?\w+|back (?:for|to|into) the "
+    r"\w+|back home|home again|(?:in|on)?to the (?:kitchen|bedroom|living room|bathroom|study|hall|door|window))$",
     re.IGNORECASE,
 )
 """Words without a verb that tell of a way: "Out the door.", "Back for the keys." """

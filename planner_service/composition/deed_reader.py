@@ -35,7 +35,7 @@ from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.no_deeds import is_state
 from planner_service.themes.opening_words import comes_in, opening_of
-from planner_service.themes.protagonist import head_of, is_person
+from planner_service.themes.protagonist import head_of, is_name, is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
@@ -262,7 +262,8 @@ class DeedReader:
             return one
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
-            if one.beat.who.split(" ")[0].lower() in _NOBODY or _sounds(one) or is_state(one.clause):
+            first = one.beat.who.split(" ")[0]
+            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or _sounds(one) or is_state(one.clause):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             words = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text

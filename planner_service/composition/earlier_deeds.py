@@ -20,6 +20,11 @@ _REMEMBERED: Final = 6
 _CALLS: Final = re.compile(r"\b(?:calls?|called|calling|phones?|telephone|rings?|rang|ringing)\b")
 _ANSWERS: Final = re.compile(r"(?:finally |then )?(?:picks?|picked) up(?: (?:after all|at last|again|finally|anyway))?")
 """Of a phone that was told of."""
+_LETTERS: Final = frozenset(("letter", "note", "card", "postcard", "telegram", "bill", "list", "invitation"))
+_READ: Final = _LETTERS | {"book", "novel", "newspaper", "magazine", "diary", "text", "message", "email", "comic"}
+_READS_IT: Final = re.compile(r"(?:re)?reads? it\b")
+_PHOTOGRAPHS: Final = frozenset(("photograph", "photo", "snapshot", "postcard", "polaroid", "drawing"))
+_PICTURE: Final = re.compile(r"^\w+ (?:the|that) picture\b")
 _RETURNS: Final = ("go", "return", "get", "come", "sit", "walk", "settle", "sink", "crawl", "climb", "head")
 _MAT: Final = re.compile(r"\b(?:mat|rug|carpet|floor)\b")
 _RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
@@ -28,22 +33,34 @@ _RESTS: Final = (Skill.SITDOWN, Skill.LIEDOWN)
 def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequence[ReadBeat]]:
     """A beat, and all of them, with what "it" is in its clause: who sits down at a desk and "opens it" opens the diary
     that was named before."""
-    read = beats[index]
-    if _ANSWERS.fullmatch(read.text) and any(
-        _CALLS.search(one.text) for one in beats[max(index - _REMEMBERED, 0) : index]
-    ):
-        read = replace(read, clause=replace(read.clause, lemmas=("answer", "the", "phone")))
-        return read, [*beats[:index], read, *beats[index + 1 :]]
-    meant = meant_by_it(read.text, [one.text for one in beats[max(index - _REMEMBERED, 0) : index]])
-    if not meant:
-        return read, beats
-    verb, _, rest = (
-        read.clause.text.split(" ", 2) if read.clause.text.count(" ") > 1 else (*read.clause.text.split(" "), "")
-    )
-    told = " ".join(filter(None, (verb, "the", meant, rest)))
-    lemmas = (*read.clause.lemmas[:1], "the", lemma_of(meant), *read.clause.lemmas[2:])
-    read = replace(read, clause=replace(read.clause, text=told, lemmas=lemmas))
+    read, before = beats[index], beats[max(index - _REMEMBERED, 0) : index]
+    clause = read.clause
+    if _ANSWERS.fullmatch(read.text) and any(_CALLS.search(one.text) for one in before):
+        clause = replace(clause, lemmas=("answer", "the", "phone"))
+    elif letter := _letter_meant(read, before):
+        clause = replace(clause, lemmas=(clause.verb, "the", letter, *clause.lemmas[2:]))
+    elif photograph := _photograph_meant(read, before):
+        lemmas = (photograph if word == "picture" else word for word in clause.lemmas)
+        clause = replace(clause, text=clause.text.replace("picture", photograph), lemmas=tuple(lemmas))
+    elif meant := meant_by_it(read.text, [one.text for one in before]):
+        verb, _, rest = (*clause.text.split(" ", 2), "", "")[:3]
+        told = " ".join(filter(None, (verb, "the", meant, rest)))
+        clause = replace(clause, text=told, lemmas=(*clause.lemmas[:1], "the", lemma_of(meant), *clause.lemmas[2:]))
+    read = replace(read, clause=clause)
     return read, [*beats[:index], read, *beats[index + 1 :]]
+
+
+def _letter_meant(read: ReadBeat, before: Sequence[ReadBeat]) -> str:
+    """What is read that was told of: "opens the letter, | reads it"; "" of other words, and where a book was."""
+    told = (word for one in reversed(before) for word in one.clause.lemmas if word in _READ)
+    found = next(told, "") if _READS_IT.match(read.text) else ""
+    return found if found in _LETTERS else ""
+
+
+def _photograph_meant(read: ReadBeat, before: Sequence[ReadBeat]) -> str:
+    """What "the picture" is where a photograph was told of: none of those on the wall; "" of other words."""
+    told = (word for one in reversed(before) for word in one.clause.lemmas if word in _PHOTOGRAPHS)
+    return next(told, "") if _PICTURE.search(read.text) else ""
 
 
 def done_before(

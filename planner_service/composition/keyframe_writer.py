@@ -40,6 +40,7 @@ from planner_service.composition.rest_place import (
     eats,
     goes_on,
     is_beside,
+    is_on,
     is_there,
     lies,
     on_feet,
@@ -58,9 +59,9 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.opening_words import Kind, opening_of
-from planner_service.themes.protagonist import head_of, names_somebody
+from planner_service.themes.protagonist import head_of, is_person, names_somebody
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
@@ -72,6 +73,8 @@ NOT_ACTED: Final = {
     "speech": "it is said; the body does not speak",
 }
 """Why beats of these kinds are not acted."""
+ONE_PLAYS: Final = "one person is played"
+_NOT_THERE: Final = frozenset(("nobody", "no", "none", "somebody", "someone", "everybody", "everyone"))
 SPOKEN_OF: Final = "it is only spoken of"
 NO_DEED: Final = "it is no deed"
 UNSHOWN: Final = "none of the captions shows it"
@@ -105,7 +108,14 @@ def _not_acted(read: ReadBeat) -> str:
     """Why a beat of a kind that is not acted is not."""
     if read.clause.aside and read.beat.kind != "memory":
         return SPOKEN_OF
-    return NO_DEED if read.beat.kind == "other" and not read.beat.who else NOT_ACTED[read.beat.kind]
+    who = read.beat.who
+    nobody = not who or (who.lower() in ("it", "there") and read.clause.verb == "be")
+    first, *rest = who.split(" ")
+    if read.beat.kind == "other" and is_person(who) and first.lower() not in _NOT_THERE:
+        named = " ".join([first.lower() if first.lower() in grammar().marks else first, *rest[:2]])
+        named = named if len(rest) <= 2 and grammar().prepositions.isdisjoint(rest) else "somebody else"
+        return f"{named} does it: {ONE_PLAYS}"
+    return NO_DEED if read.beat.kind == "other" and nobody else NOT_ACTED[read.beat.kind]
 
 
 @dataclass(frozen=True)
@@ -290,9 +300,9 @@ class KeyframeWriter:
                 self._rise(index, deed, mood)
             case Skill.LOCO if resting is not None and goes_on(read, deed):
                 self.body.show(index)
-            case Skill.LOCO if deed.row.seated and sits(resting) and "stand" not in read.clause.lemmas:
+            case Skill.LOCO if deed.row.seated and sits(resting) and not _is_done_standing(read):
                 self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
-            case Skill.LOCO if deed.row.lying and lies(resting) and not deed.named:
+            case Skill.LOCO if deed.row.lying and lies(resting) and (not deed.named or is_on(resting, deed)):
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
             case Skill.LOCO if resting is not None and lies(resting) and not deed.named and eats(deed):
                 deed = replace(deed, pieces=(resting.furniture,), named=True)  # sitting up
@@ -327,6 +337,9 @@ class KeyframeWriter:
             elif stands_in:
                 self.why[index] = UNSHOWN  # nobody gets up for what would show no more
             return stands_in or (deed.skill is Skill.TOUCH and self._is_on_body(index, read))
+        if deed.is_gesture and deed.skill is Skill.LOCO and lies(resting) and not deed.row.lying and is_beside(read):
+            self.why[index] = UNSHOWN  # "lies on the bed tossing a ball": nobody gets up for it
+            return True
         rests = bool(self.keyframes) and deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)
         if rests and lemma_of(head_of(read.clause.subject)) in theme_words()["body"]:
             self.body.show(index)  # "leans against the wall, arms crossed"
@@ -448,9 +461,13 @@ class KeyframeWriter:
                 self.body.show(index)
                 return
             caption = others[0]
+        lies_at = self.body.whereabouts.of(read.clause, deed) if deed.is_gesture and piece == "floor" else None
+        if lies_at is not None and self.places.has(lies_at[1]):  # "the letter lies on the table. She opens it"
+            piece = lies_at[1]
         if deed.is_gesture and not deed.row.walks:  # gone to, then done there
             elsewhere = bool(self.keyframes) and read.room not in (None, self.body.room)
-            if elsewhere if piece == "floor" else not self.body.is_there(piece, read.room):
+            touched = last is not None and (last.skill, last.furniture) == (Skill.TOUCH, piece)
+            if elsewhere if piece == "floor" else not (touched or self.body.is_there(piece, read.room)):
                 self.body.put(index, Skill.LOCO, mood, usual(Skill.LOCO, mood), piece, read.room)
             piece = "floor"
         self.body.put(index, Skill.LOCO, mood, caption, piece, read.room)
@@ -496,7 +513,9 @@ class KeyframeWriter:
         if part is not None and is_gainsaid(read.clause, part.keyframes[-1:]):
             part = None
         at = next((one.furniture for one in self.keyframes[:-3:-1] if not one.on_floor), "floor")
-        by_pronoun = deed.named and bool({"it", "them"} & {*read.clause.lemmas}) and not pieces_in(read.clause.text)
+        by_pronoun = deed.named and not pieces_in(read.clause.text) and (
+            bool({"it", "them"} & {*read.clause.lemmas}) or deed.pieces[:1] == ("picture",)
+        )  # fmt: skip
         meant = replace(deed, named=deed.named and not by_pronoun)  # "it" is the parcel, not the table it was set on
         linked = self.body.whereabouts.of(read.clause, meant) if skill is Skill.TOUCH else None
         if linked is not None and affords(linked[1], "touch") and self.places.has(linked[1]):
@@ -566,6 +585,11 @@ class KeyframeWriter:
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
+
+
+def _is_done_standing(read: ReadBeat) -> bool:
+    """Whether who sits gets up for what may be done sitting too: "eats standing", "stares out of the window"."""
+    return "stand" in read.clause.lemmas or opening_of(Skill.LOCO, read.text) == "window"
 
 
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:

@@ -14,7 +14,6 @@ from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import usual
 
 _MOODY: Final = {
-    Emotion.HAPPY: "walk excitedly with arms opened",
     Emotion.STRESSED: "pacing back and forth",
     Emotion.RELAXED: "strolling with hands in pockets",
     Emotion.TIRED: "shuffling sleepily forward",

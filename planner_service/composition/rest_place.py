@@ -49,6 +49,11 @@ def sits(resting: PlannedKeyframe | None) -> bool:
     return resting is not None and resting.skill is Skill.SITDOWN
 
 
+def is_on(resting: PlannedKeyframe | None, deed: Deed) -> bool:
+    """Whether a body rests on what a deed names: who lies on the bed hugs its pillow there."""
+    return resting is not None and resting.furniture in deed.pieces
+
+
 def is_there(resting: PlannedKeyframe, deed: Deed, skill: Skill) -> bool:
     """Whether a deed may be done on what a body rests on: sitting or lying, as `skill` says."""
     kinds = furniture.categories_of(resting.furniture)

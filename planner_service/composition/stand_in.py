@@ -54,6 +54,8 @@ def is_too_much(read: ReadBeat, deed: Deed, before: BodyTrack, after: BodyTrack,
         return False
     if (is_sure(read, deed) and not is_gainsaid(read.clause, done)) or not (seated or rises or len(new) > len(done)):
         return False  # a hand, or steps, where one is
+    if is_gainsaid(read.clause, done) and len(new) > len(done):
+        return True  # nor for what it cannot be: "shakes a bag of treats"
     least = SEATED_FOR_IT if rises or (seated and done[-1].skill is Skill.SITDOWN) else GONE_FOR_IT
     if max(reader.likelihood(read.clause, one) for one in done) < least:
         return True

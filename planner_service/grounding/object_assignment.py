@@ -159,12 +159,15 @@ def usable_offers(home: Home, checked: bool = False) -> dict[str, frozenset[str]
     Of a room that was `checked` as it was made only what decorates it is looked at: a picture may hang over a bed.
     Rooms that are joined may close a way round that was there in each.
     """
-    walkable = scene_of(home).walkable
-    start = walkable.random_point(np.random.default_rng(0), 0)
     return {
-        placed.id: frozenset(
-            need for need in offers(placed) if any(can_stand(walkable, start, spot) for spot in spots(placed, need))
-        )
+        placed.id: frozenset(need for need in offers(placed) if is_usable(home, placed.id, need))
         for placed in home.objects
         if not checked or class_of(placed.category) == "decor"
     }
+
+
+def is_usable(home: Home, object_id: str, need: str) -> bool:
+    """Whether a body that walks in a home gets at one of its objects to sit, lie or touch."""
+    walkable = scene_of(home).walkable
+    start = walkable.random_point(np.random.default_rng(0), 0)
+    return any(can_stand(walkable, start, spot) for spot in spots(home.object(object_id), need))

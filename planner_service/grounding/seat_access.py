@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from planner_service.grounding.keyframes_to_actions import Place
-from planner_service.grounding.object_assignment import FLOOR, MissingError, Placing, StandIn, usable_offers
+from planner_service.grounding.object_assignment import FLOOR, MissingError, Placing, StandIn, is_usable, usable_offers
 from planner_service.grounding.seat_tables import done_at_tables
 from planner_service.scripts.script import Keyframe, LongScript
 from scene_graphs.affordances.chairs_at_tables import drawn_up
@@ -59,9 +59,12 @@ def draw_up(home: Home, keyframes: Sequence[Keyframe], places: Sequence[Place]) 
         number, _, object_id = name.partition("/")
         index = int(number)
         move = drawn_up(rooms[index].layout, object_id)
-        if move is not None:
-            rooms[index] = replace(rooms[index], layout=pulled(rooms[index].layout, move))
-            moves[index] = (*moves.get(index, ()), move)
+        if move is None:
+            continue
+        room = replace(rooms[index], layout=pulled(rooms[index].layout, move))
+        moved = replace(home, rooms=(*rooms[:index], room, *rooms[index + 1 :]))
+        if len(rooms) == 1 or is_usable(moved, name, "sit"):  # the door to another room may be elsewhere
+            rooms[index], moves[index] = room, (*moves.get(index, ()), move)
     return (replace(home, rooms=tuple(rooms)) if moves else home), moves
 
 

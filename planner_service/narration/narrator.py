@@ -1,4 +1,4 @@
-"""A long script told as a story: its theme in the past, where the body rests, and what of it no keyframe shows.
+"""A long script told as a story: its theme in the past, and what of it no keyframe shows.
 
 A theme is told in its own sentences, so that causes, news and other people keep their places. What of it the body is
 not seen doing is a thought (`Told.thoughts`), never an event. Keyframes that no words of the theme tell of are told by
@@ -15,14 +15,14 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 from typing import Final
 
-from motion_backend.motion import RISINGS, Character, Skill
+from motion_backend.motion import Character, Skill
 from planner_service.narration.beat_stretches import SUBJECTS, Retelling, Stretch
 from planner_service.narration.keyframe_phrases import RESTS, Places, Variety, Wording
 from planner_service.narration.keyframe_sentences import sentences
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.retold_theme import retell
-from planner_service.narration.story_words import headline, story_words, title_of
-from planner_service.narration.tense import bases, form_of
+from planner_service.narration.story_words import headline, title_of
+from planner_service.narration.tense import form_of
 from planner_service.narration.told import Told, Words, page
 from planner_service.scripts.acted_beats import connects, planned_beats
 from planner_service.scripts.script import LongScript, PlannedKeyframe
@@ -36,9 +36,6 @@ _MOST_OF_ONE: Final = 2
 """Keyframes, those that only lead to others aside, which the words of one beat tell."""
 MAX_TITLE_WORDS: Final = 6
 """Of one made for a script that has none."""
-_PLACE: Final = re.compile(r"\b(?:on|in|at|by|into|onto|under|beside|near|to|from|around|against|before|behind) \w+")
-_AT_TABLES: Final = {"dining chair": "at the table", "office chair": "at the desk"}
-"""How one says that somebody sits on a seat that stands at a table."""
 Rows = Sequence[tuple[int, PlannedKeyframe]]
 
 
@@ -150,7 +147,6 @@ class _Teller:
         shown: dict[int, list[int]] = {}
         besides: dict[int, list[Rows]] = {}
         last: int | None = None
-        resting: PlannedKeyframe | None = None
         waiting: list[int] = []
         for beat, rows in self.runs:
             own = [*waiting, *(index for index, _ in rows)]
@@ -170,9 +166,6 @@ class _Teller:
                 last = last if stretch is None else beat
                 shown.setdefault(last, []).extend(own)  # type: ignore[arg-type]
                 waiting = []
-                if stretch is not None and not replaced:
-                    self._rests(stretch, rows, resting)
-            resting = rows[-1][1] if rows[-1][1].skill in RESTS else None
         if waiting:
             besides.setdefault(self.told.ends[-1], []).append([(at, self.script.keyframes[at]) for at in waiting])
         found = [(self.of[beat], tuple(own)) for beat, own in shown.items()]
@@ -187,28 +180,6 @@ class _Teller:
         last = not any(stretch.start < other.start <= end for other in self.told.stretches)
         same = all(one.skill is Skill.TOUCH for one in done)  # "plumps every cushion"
         return len(done) > _MOST_OF_ONE and not (named or same) and last
-
-    def _rests(self, stretch: Stretch, rows: Rows, resting: PlannedKeyframe | None) -> None:
-        """Say where the body sits or lies for a beat, unless it does already or the words say so."""
-        rests = [(at, one) for at, one in rows if one.skill in RESTS]
-        beat, text = self.script.beats[stretch.beat], self.told.words(stretch)
-        rises = any(one.skill in RISINGS for _, one in rows)  # "wakes up"
-        if not rests or rises or stretch.verb is None or beat.kind != "deed" or not beat.seen:
-            return
-        index, first = rests[0]
-        there = resting is not None and resting.piece == first.piece
-        if first.already or (there and resting is not None and resting.skill is first.skill):
-            return
-        verb = self.told.tokens[stretch.verb]
-        known = not {*story_words().deeds[first.skill].split()}.isdisjoint(bases(verb.low)) or _PLACE.search(text)
-        if known or form_of(verb.told.lower()) != "past":
-            return
-        sits = first.skill is Skill.SITDOWN
-        on = self.wording.on(index, first)
-        down = f"{'sat' if sits else 'lay'} down {_AT_TABLES.get(on.partition(' the ')[2], on)}"
-        follows = "".join(token.text for token in self.told.tokens[stretch.end :])
-        joint = "," if re.match(r",?\s*(?:and|then)\b|,", follows) else " and"  # "sat down, ate and went to bed"
-        verb.before += f"{('sat up' if sits else 'lay back') if there else down}{joint} "
 
     def _keyframes(self, shown: Sequence[tuple[Stretch, tuple[int, ...]]]) -> dict[int, tuple[int, ...]]:
         """By token the keyframes it tells, those of each stretch by its own words alone: a theme may tell what is done

@@ -71,7 +71,8 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     """A theme in the past, told of a voice's person."""
     theme = _IT_IS.sub(lambda one: one[1] or f"{one[2]} is", re.sub(r"(?<!\.)\.\.(?!\.)", ".", theme))
     clauses = clauses_of_text(theme)
-    hero = hero_of(clauses)
+    ordered = clauses[:1] and not clauses[0].subject and clauses[0].text.split()[0].lower() == clauses[0].verb
+    hero = hero_of(clauses) or ("you" if ordered else "")  # "Hide under the table, then crawl out"
     own = called(clauses, hero) or hero.lower()
     told = Retelling(tokens_of_theme(theme))
     told.stretches = located(told.tokens, beats)
@@ -79,8 +80,11 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     several = own in _PLURAL or (own not in _SINGULAR and is_plural(head_of(hero).lower()))  # "two friends dance, sing"
     together = {one.text.split()[0].lower() for one in clauses if " and " in one.subject}  # "Emma and Luca | quarrel"
     _put_in_past(told, plain=several, all_of_it=_is_present(told), together=together)
+    if ordered:
+        _say_who(voice, told, beats)
     _tell_of(voice, told.tokens, hero, own)
-    _say_who(voice, told, beats)
+    if not ordered:
+        _say_who(voice, told, beats)
     _capitalise(told)
     return told
 
@@ -177,7 +181,7 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     if (
         form is None
         and base
-        and not asked
+        and not (asked and marked == word)
         and (before in _PLURAL or (head and (plain or before in _SINGULAR or is_plural(before))))
     ):
         return past(word)
@@ -265,7 +269,7 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
         if opens and alone and verb is not None and beats[stretch.beat].seen and _is_finite(verb.told):
             first = told.tokens[stretch.start]
             first.told = first.told[:1].lower() + first.told[1:]
-            first.before = f"{voice['they'] if named else voice.name} "
+            first.before, first.is_name = f"{voice['they'] if named else voice.name} ", True
             if verb.told == "was" and named:
                 verb.told = voice.was(voice["they"])
             named = True

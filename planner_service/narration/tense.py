@@ -13,7 +13,9 @@ Form = Literal["past", "present", "ing", "participle"]
 _FORMS: Final[dict[Form, Callable[[str], str]]] = {
     "past": past, "present": third_person, "ing": gerund, "participle": participle
 }  # fmt: skip
-_NO_VERBS: Final = "a an and as at but by for he her his i in it my no of on or she so the they to we"
+_NO_VERBS: Final = (
+    "a an and as at but by for he her his i in it my no of on or she so the they to we first second third fourth fifth"
+)
 """Small words that a dictionary also has as verbs."""
 
 

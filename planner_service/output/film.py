@@ -40,10 +40,12 @@ TITLE_SECONDS: Final = (1.6, 2.5)
 """At least, and as long as nobody walks under it."""
 FIRST_WORDS: Final = 1.0
 """Seconds after which told words may begin under it."""
-TEXT_HEIGHT, TITLE_HEIGHT = 0.042, 0.085
+TEXT_HEIGHT, TITLE_HEIGHT, LEGEND_HEIGHT = 0.042, 0.085, 0.028
 """Of the picture's height."""
-WORDS_END: Final = 0.94
-"""Where in the picture's height told words end."""
+WORDS_END, LEGEND_ENDS = 0.94, 0.985
+"""Where in the picture's height told words end, and what their slanted letters mean."""
+LEGEND: Final = ("in italics", ": told, not seen")
+"""Slanted and upright: under the first words of which some are slanted."""
 SHADE: Final = 0.42
 """How much of a picture's light stays under its words: white letters are 4.5 times as bright as a white wall there
 (WCAG 2.2, contrast), whatever is behind them."""
@@ -117,12 +119,15 @@ def film_plan(filmed: Filmed, size: tuple[int, int] = SIZE) -> FilmPlan:
     if title is not None:
         place, untitled, shots = _placed(title.shape, size, shots, motion)
         across, bottom = place.across, place.box((title.shape[0], title.shape[1]), size)[3] / size[1]
-    words = [(line, lettered(line.lines, size, TEXT_HEIGHT)) for line in filmed.words]
+    words = [(line, WORDS_END, lettered(line.lines, size, TEXT_HEIGHT)) for line in filmed.words]
+    legend = [(letter, slanted) for part, slanted in zip(LEGEND, (True, False), strict=True) for letter in part]
+    first = [line for line in filmed.words if line.slanted][:1]
+    words += [(line, LEGEND_ENDS, lettered([legend], size, LEGEND_HEIGHT)) for line in first]
 
     def dressed(frame: int, picture: Planes) -> Planes:
-        for line, letters in words:
+        for line, end, letters in words:
             if letters is not None and line.start <= frame < line.stop:
-                lay_words(picture, letters, WORDS_END, SHADE)
+                lay_words(picture, letters, end, SHADE)
         if title is not None and frame < untitled:
             lay_words(picture, title, bottom, SHADE, across)
         return picture

@@ -20,6 +20,8 @@ SETTLES: Final = (*WAYS, PhaseKind.EDGE, PhaseKind.SITDOWN, PhaseKind.LIEDOWN)
 """Phases after which who falls asleep can."""
 OWN: Final = {Skill.STANDUP: (), Skill.GETUP: (), Skill.LOCO: (PhaseKind.STANDUP, PhaseKind.GETUP)}
 """The ways of skills whose deed is one."""
+STANDS: Final = 1.5
+"""Seconds for which who stops on a way stands, at least, where the deed is done there: a look out, a wave."""
 DOWN: Final = 0.6
 """The share of the settling phase that is over when somebody is as good as down: the rest is ease."""
 
@@ -55,6 +57,14 @@ def _deed(motion: Motion, keyframe: int, segment: tuple[int, int], role: Role, t
     if last is not None:
         settles = asleep and last.kind not in WAYS
         arrives = round(last.start + DOWN * (last.stop - last.start)) if settles else last.stop
+    if skill is Skill.LOCO and not any(start <= frame < stop for frame in taken):
+        arrives = max(arrives, _stops(motion, start, stop))
     # What is all way is done on the way.
     arrives = arrives if start <= arrives < stop else start
     return max([arrives, *(frame for frame in taken if start <= frame < stop)])
+
+
+def _stops(motion: Motion, start: int, stop: int) -> int:
+    """The frame from which somebody stands for a while to the end of some frames; their first where nobody does."""
+    stands = [p for p in motion.phases if p.kind is PhaseKind.STAND and p.start < stop <= p.stop]
+    return next((p.start for p in stands if stop - max(p.start, start) >= STANDS * motion.fps), start)

@@ -186,13 +186,8 @@ def _with_following(pieces: Iterable[_Piece]) -> Iterator[_Piece]:
 
 
 def _in_time(pieces: Iterable[_Piece]) -> list[_Piece]:
-    """Pieces of which each tells what is done after the piece before: those told in another order are one."""
-    found: list[_Piece] = []
-    for piece in pieces:
-        while found and max(max(one.keyframes) for one in found) > min(piece.keyframes):
-            piece = found.pop().joined(piece)
-        found.append(piece)
-    return found
+    """Pieces in the order in which what they tell is done, whichever is told first."""
+    return sorted(pieces, key=lambda piece: min(piece.keyframes))
 
 
 def _pieces(told: Told) -> Iterator[_Piece]:
@@ -214,14 +209,16 @@ def _pieces(told: Told) -> Iterator[_Piece]:
 
 
 def _pages(told: Told, piece: _Piece) -> Iterator[_Page]:
-    """The words of a piece, as many at a time as fit into one picture, without whole sentences of what is not seen."""
+    """The words of a piece, as many at a time as fit into one picture, without whole sentences of what is not seen, nor
+    something that stands for it."""
     thought = [False] * len(told.text)
     for span in told.thoughts:
         thought[span.start : span.end] = [True] * (span.end - span.start)
     for start, stop in _fitting(told.text, piece):
         words = told.text[start:stop]
         seen = [not thought[start + at] for at, letter in enumerate(words) if letter.isalnum()]
-        if seen and (any(seen) or not _is_whole(told.text, start, stop)):
+        played = any(span.start < stop and start < span.end for span in told.spans)
+        if seen and (played or any(seen) or not _is_whole(told.text, start, stop)):
             yield _page(told.text, start, stop, thought)
 
 

@@ -143,7 +143,8 @@ class ActedBeats:
         something is not acted; none without beats."""
         if not self.outcomes:
             return []
-        share = f"{1 - self.other_share:.0%} of the screen time shows them"
+        other = f"{self.other_share:.0%}"
+        share = "nothing else is played" if other == "0%" else f"{other} of the screen time plays something else"
         plain = all(one.acted and not one.beat.unshown for one in self.outcomes)
         more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [
@@ -205,8 +206,9 @@ def lost_in_moving(beats: Sequence[Beat], shots: Sequence[Shot]) -> frozenset[in
 def _outcome(beat: Beat, index: int, shots: Sequence[Shot]) -> Outcome:
     seen, why = _seen(beat, index, shots), _why(beat, index, shots)
     stood_for = seen.stood_for and not why
+    planned = beat.stood_for
     where = next((words for shot in shots if index in shot.beats for words in shot.otherwise
-                  if IN_PLACE_OF in words and _concerns(words, beat)), "")  # fmt: skip
+                  if (IN_PLACE_OF in words or not planned) and _concerns(words, beat)), "")  # fmt: skip
     place = f"{IN_ITS_PLACE}, {where}" if where else IN_ITS_PLACE
     return Outcome(seen, place if stood_for else why, stood_for)
 

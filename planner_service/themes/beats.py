@@ -71,6 +71,7 @@ EXPRESSIONS: Final = {
 }
 """Verbs that say how somebody feels who does it."""
 _CRIES: Final = ("scream", "shriek")
+_WEEPS: Final = ("weep", "cry", "sob")
 _LAUGHS: Final = ("laugh", "giggle", "chuckle", "cackle")
 _TEARS: Final = re.compile(r"\b(?:tears?|cr(?:y|ies|ied|ying)|weeps?|wept|weeping|aches?|hurts?)\b", re.IGNORECASE)
 """Who laughs till these is happy."""
@@ -181,6 +182,8 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
         named, of_subject = _emotion(f"{clause.subject} {clause.text}")  # "a tired student …"
         emotion, sure = (named, True) if of_subject else (emotion, sure)
     laughs = clause.verb in _LAUGHS and _TEARS.search(clause.text)
+    if emotion is Emotion.RELAXED and clause.verb in _WEEPS:
+        emotion = Emotion.SAD  # who "weeps quietly" is not at peace
     if (laughs or not sure) and not who and (shown := EXPRESSIONS.get(clause.verb)):
         raves = clause.verb in _CRIES and clause.lemmas[1:2] == ("at",)  # fright is at nobody
         emotion, sure = Emotion.ANGRY if raves else shown, True
@@ -300,7 +303,8 @@ def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:
         after = read[index + 1] if index + 1 < len(read) else None
         together = after is not None and after.clause.sentence == one.clause.sentence
         before = read[index - 1] if index else one
-        if one.beat.kind == "memory" or (one.clause.sentence in recalled and one.clause.joint in RECALLING):
+        told = one.clause.joint in RECALLING or (before.beat.kind == "memory" and one.clause.subject != "")
+        if one.beat.kind == "memory" or (one.clause.sentence in recalled and told):
             own = one.felt or mood
             moods.append(replace(one, beat=one.beat.model_copy(update={"emotion": own})))
             continue
@@ -361,6 +365,8 @@ def _emotion(text: str) -> tuple[Emotion | None, bool]:
     """The emotion the words show: drunk if that is named, else the last one named, else the last hint."""
     found = [feeling for feeling in feelings(text) if feeling.emotion != "neutral"]
     named = [feeling.emotion for feeling in found if feeling.sure]
+    if Emotion.HAPPY in named and _TEARS.search(text):
+        return Emotion.HAPPY, True
     if named:
         return (Emotion.DRUNK if Emotion.DRUNK in named else named[-1]), True
     first = [feeling for feeling in found if feeling.start == 0]  # what is done hints more than what it is done to

@@ -175,5 +175,5 @@ def _inflected(base: str, tag: str) -> str:
     """A form of a verb, as in Britain where there are two: travelled."""
     from lemminflect import getInflection
 
-    found: tuple[str, ...] = getInflection(base, tag=tag) or (base,)
+    found: tuple[str, ...] = (base and getInflection(base, tag=tag)) or (base,)
     return next((form for form in found if base.endswith("l") and "ll" in form), found[0])

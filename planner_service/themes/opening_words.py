@@ -39,6 +39,14 @@ _TO_THE_DOOR: Final = re.compile(
     r"|\b(?:see|check|look) who\b",
     re.IGNORECASE,
 )
+_GOES_OUT: Final = re.compile(
+    rf"\b(?:out|through) (?:of |by )?{_OF_A_HOUSE}(?:door|doorway)(?!\w| of)"
+    r"|^(?:\w+ly )?(?:leav(?:e|es|ing)|left)(?=$|[,.;]| (?:again|alone|early|\w+ly|without|for|(?:the|his|her|their)"
+    r" (?:house|home|flat|apartment))\b)"
+    r"|\b(?:go|went|run|ran|walk|storm|rush|hurr|dash|slip|sneak|stomp|head)\w* out(?=$|[,.;]| (?:again|quickly|without"
+    r"|into the (?:rain|night|street|cold|snow|garden)|of the (?:house|flat|apartment|home))\b)",
+    re.IGNORECASE,
+)
 _TO_THE_WINDOW: Final = re.compile(
     r"\b(?:to|towards?|over to) (?:the|a|an|his|her|their|my|its) (?:\w+ )?windows?(?!\w| (?:sill|seat))", re.IGNORECASE
 )
@@ -87,7 +95,7 @@ def opening_of(skill: Skill, said: str) -> Kind | None:
     if skill is Skill.TOUCH:
         return "window" if _HANDLES.search(said) else "door" if _OPENS.search(said) else None
     if skill is Skill.LOCO:
-        return "window" if _LOOKS.search(said) else "door" if _TO_THE_DOOR.search(said) else None
+        return "window" if _LOOKS.search(said) else "door" if _TO_THE_DOOR.search(said) or goes_out(said) else None
     return None
 
 
@@ -103,6 +111,11 @@ def meant_by_it(said: str, before: Sequence[str]) -> str:
 def goes_to_window(said: str) -> bool:
     """Whether a walk leads to a window, by the theme's words: "carries it to the window"."""
     return bool(_TO_THE_WINDOW.search(said))
+
+
+def goes_out(said: str) -> bool:
+    """Whether somebody leaves the home, by the theme's words: "runs out of the door"."""
+    return bool(_GOES_OUT.search(said))
 
 
 def comes_in(said: str) -> bool:

@@ -40,6 +40,8 @@ _MAIN_JOINTS: Final = frozenset(("", ",", "and", "but", "so", "then", "to", "ing
 _OWNED: Final = re.compile(r"^(?P<owner>.*)['’]s (?=\w)")
 _SOMEBODY: Final = ("somebody", "someone")
 _FIRST_PERSON: Final = frozenset(("i", "we", "me", "my", "you"))
+_TOGETHER: Final = frozenset(("couple", "pair", "family", "newlyweds"))
+"""What whom a theme is about is one of."""
 _SUBJECTS: Final = frozenset(("he", "she", "they", "who"))
 
 
@@ -70,11 +72,23 @@ def cast_by(theme: str, character: Character) -> Character:
 def _called_as(hero: str, pronoun: str) -> str:
     """What to call whom a theme is about: by name ("Mr. Brown", "Aunt Rosa"), else as the theme does ("the old man",
     "my sister"); "" for "she", "I" and "a person"."""
-    words = [token.text for token in tokens_of(hero)]
-    several = [list(part) for is_and, part in groupby(words, lambda word: word in ("and", ",")) if not is_and]
-    one = next((part for part in several if pronoun and pronouns_of(" ".join(part)) == pronoun), [*several, []][0])
+    one = _each_of(hero, pronoun)[0].split()
     name = _name_among(one) or ("" if _is_pronoun(hero) else _noun_as_told(one))
     return name if len(name) <= MAX_NAME_LENGTH else f"the {head_of(hero)}"[:MAX_NAME_LENGTH]
+
+
+def _each_of(hero: str, pronoun: str) -> list[str]:
+    """The people of a subject, the one that is played first: whom the theme calls by the pronoun, else the first."""
+    words = [token.text for token in tokens_of(hero)]
+    each = [" ".join(part) for is_and, part in groupby(words, lambda word: word in ("and", ",")) if not is_and]
+    return sorted(each or [""], key=lambda one: not pronoun or pronouns_of(one) != pronoun)
+
+
+def _is_called_so(subject: str, person: str) -> bool:
+    """Whether a subject means one of several people: "Karim", or "the brother", of "her brother Karim"."""
+    name = _name_among(subject.split())
+    same = name == _name_among(person.split()) if name else head_of(subject).lower() == head_of(person).lower()
+    return bool(subject) and not _is_pronoun(subject) and same
 
 
 def _name_among(words: Sequence[str]) -> str:
@@ -254,9 +268,17 @@ def called(clauses: Sequence[Clause], hero: str) -> str:
     most = _told_most(clauses)
     if hero.lower() in _FIRST_PERSON and _deeds_by(clauses, ("he", "she"))[most] <= _deeds_by(clauses, ("i",))["i"]:
         return ""
+    if most and _is_listed(hero) and _by_what_is_theirs(clauses, hero) == pronouns_of(hero):
+        return pronouns_of(hero)
     if most and _is_listed(hero) and not any(_may_be(one.subject, hero, most) for one in clauses):
         return most  # what a theme says tells more than a list of names
     return pronouns_of(hero) or most
+
+
+def _by_what_is_theirs(clauses: Sequence[Clause], hero: str) -> str:
+    """The pronoun that a hero's own deeds tell: Oskar, who "burps her on his shoulder", is he; "" where none does."""
+    own = {word for one in clauses if one.doer == hero for word in one.lemmas}
+    return "he" if not {"his", "himself"}.isdisjoint(own) else "she" if "herself" in own else ""
 
 
 def _is_listed(hero: str) -> bool:
@@ -345,7 +367,12 @@ def names_somebody(clause: Clause) -> bool:
 def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
     """Whether a subject is whom the theme is about, whom it calls by a pronoun. Nobody named: it goes on with who it
     was about."""
-    name = _name_among([token.text for token in tokens_of(hero)])
+    mine, *others = _each_of(hero, pronoun)
+    if any(_is_called_so(subject, one) for one in others):
+        return False  # of "Nadia and her brother Karim" what Karim does
+    if others and _is_called_so(subject, mine):
+        return True
+    name = _name_among([token.text for token in tokens_of(mine)])
     if not subject or subject.lower() in (hero.lower(), name.lower()):
         return True
     if subject.lower().endswith(("both of them", "all of them", "two of them", "both of us")):
@@ -361,6 +388,8 @@ def is_hero(subject: str, hero: str, pronoun: str = "") -> bool:
         return True
     if not is_person(subject):
         return False
+    if hero and head_of(subject).lower() in _TOGETHER:
+        return True  # "the couple quarrel: Joanna shouts"
     if not hero or hero.lower() in _SUBJECTS:
         called = pronouns_of(subject) in ("", hero.lower()) or hero.lower() not in ("he", "she")
         return subject[:1].isupper() and " " not in subject and called and subject.lower() not in _SOMEBODY

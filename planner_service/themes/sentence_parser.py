@@ -38,11 +38,15 @@ _TITLE: Final = re.compile(r"\b(Mme|Mlle|Sgt|Capt|Col|Lt|Fr|Sr|St)\.(?= [A-Z])")
 """Titles whose full stop ends no sentence."""
 _LOUD: Final = re.compile(r"\b[A-Z]{4,}\b")
 """Names as screenplays write them."""
-_IDLE: Final = frozenset(("do", "be", "have", "lose", "waste", "take", "make", "pay", "give", "get", "leave"))
+_IDLE: Final = frozenset(
+    ("do", "be", "have", "lose", "waste", "take", "make", "pay", "give", "get", "leave", "find", "see", "hear")
+)
 """Verbs that with "nothing" or "no" tell of a deed all the same: "does nothing", "loses no time"."""
 _FEWEST_DENYING: Final = 2
 _PARTICLES: Final = frozenset(("on", "off", "down", "up", "around", "there", "back"))
-_BULLET: Final = re.compile(r"(?:^\s*(?:\d{1,2}[.)]|[-*•])|(?<=[.!?;:] )\d{1,2}[.)])\s+", re.MULTILINE)
+_BULLET: Final = re.compile(
+    r"(?:^\s*(?:\d{1,2}[.)]|[-*•])|(?<=[.!?;:] )\d{1,2}[.)]|(?<=\w )\d{1,2}\))\s+", re.MULTILINE
+)
 _HEADING: Final = re.compile(
     r"(?:^|(?<=[.!?] ))(?:\w+(?:['’]s)? ){0,3}(?:chores|routine|errands|tasks|plan|plans|schedule|to-?do(?: list)?"
     r"|list|diary|programme|agenda|chapter \w+|act \w+|scene \w+|part \w+|day \w+"
@@ -152,7 +156,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             beside = (
                 is_led(piece.joint, ()) or _main(parts).absolute
             )  # "because guests are coming", "the coffee going cold"
-            if not doer or not beside:
+            if (not doer and own.lower() != "it") or not beside:
                 doer = own or doer
         found += [part for place in in_time(pieces) for part in told[place]]
     return tuple(found)
@@ -199,7 +203,7 @@ def _sharing(before: Clause, parts: list[Clause]) -> list[Clause]:
 
 def sentences_of(text: str) -> list[str]:
     """The sentences, lines and list items of a text, without marks at their ends."""
-    text = _HEADING.sub("", _BULLET.sub("", text)) or text
+    text = _HEADING.sub("", _BULLET.sub(lambda one: "\n" if one.start() else "", text)) or text
     text = _WHAT_IT_IS.sub(_named_after, _AGE.sub(r", \1,", text))
     parts = [part for line in _SEMI.split(text) if line.strip() for part in _segments(line)]
     parts = [_TIME.sub("", part) for part in parts]

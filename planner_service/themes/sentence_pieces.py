@@ -31,9 +31,13 @@ _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long"
 """What joining words stand after where they join nothing: "at once", "for a while"."""
 _PAIRS: Final = frozenset(
     (("up", "down"), ("down", "up"), ("back", "forth"), ("to", "fro"), ("round", "round"), ("over", "over"),
-     ("on", "on"), ("in", "out"), ("again", "again"), ("off", "on"), ("on", "off"))
+     ("on", "on"), ("in", "out"), ("again", "again"), ("hide", "seek"), ("off", "on"), ("on", "off"))
 )  # fmt: skip
 """Words that "and" makes one: "up and down"."""
+
+
+_FEWEST_NOTES, _MOST_OF_NOTE = 3, 4
+"""Pieces that a list of notes has more than, and words of the longest of them."""
 
 
 @dataclass(frozen=True)
@@ -183,6 +187,8 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
     """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
     if all(verb_place(piece.tokens) is None for piece in pieces) and all(piece.joint in ("", ",") for piece in pieces):
         return pieces  # "stretch, shower, news"
+    if _is_list(pieces):
+        return [replace(one, bare=_orders(one), verbless=not _orders(one)) for one in pieces]
     whole: list[Piece] = []
     waiting: Piece | None = None
     for place, piece in enumerate(pieces):
@@ -206,6 +212,19 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
         else:
             waiting = piece
     return [*whole, waiting] if waiting is not None else whole
+
+
+def _is_list(pieces: Sequence[Piece]) -> bool:
+    """Whether pieces are short notes of what is done: "wake up, yawn, get dressed, coffee, leave"."""
+    joined = all(piece.joint in ("", ",", "and", "then") and len(piece.tokens) <= _MOST_OF_NOTE for piece in pieces)
+    nobody = all(grammar().subjects.isdisjoint(token.low for token in piece.tokens) for piece in pieces)
+    return len(pieces) > _FEWEST_NOTES and joined and nobody and 2 * sum(map(_orders, pieces)) > len(pieces)
+
+
+def _orders(piece: Piece) -> bool:
+    """Whether a piece begins with a verb in its base form."""
+    first = piece.tokens[0]
+    return verb_of(first.low) == first.low and not (first.low in things() or is_adverb(first.low))
 
 
 def _without_relatives(pieces: list[Piece]) -> list[Piece]:

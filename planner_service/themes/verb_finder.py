@@ -108,8 +108,8 @@ def verb_place(tokens: Sequence[Token]) -> int | None:
 
 
 def _opening_name(tokens: Sequence[Token]) -> int:
-    """How many words name whom a clause opens with before what they do, though it may be a verb too: "Peter | stands
-    up", "Grandma Rose | knits"; 0 where none do."""
+    """How many words name whom a clause opens with, though a name may be a verb too: "Peter | stands up", "Grandma Rose
+    | knits"; 0 where none do."""
     called = tokens[:1] and (tokens[0].text[:1].isupper() and tokens[0].low in theme_words()["people"])
     end = 1 + bool(called)
     named = [token.text[:1].isupper() and token.low in names() for token in tokens[end - 1 : end]]
@@ -158,7 +158,7 @@ def is_adverb(word: str) -> bool:
 def _acts(tokens: Sequence[Token], place: int) -> bool:
     """Whether the word there acts as a verb, going by its form and the words about it."""
     word, base = tokens[place].low, verb_of(tokens[place].text)
-    if calls(tokens, place):
+    if calls(tokens, place) or tokens[place].text.endswith(("'s", "’s")):
         return False
     if not base or [token.low for token in tokens[place + 1 : place + 3]] == ["in", "hand"]:
         return False  # "phone in hand"
@@ -229,6 +229,8 @@ def _opens(word: str, base: str, after: str) -> bool:
     """Whether a word that opens a clause acts as a verb, before another word."""
     if word.endswith("ing"):
         return not is_noun(word) or bool(after)
+    if lemma_of(word) in theme_words()["body"] and participle(verb_of(after)) == after != "":
+        return False  # "eyes closed"
     sure = is_third_person(word) or participle(base) != past(base) == word  # "fell", "woke"
     if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions | _PARTICLES):
         return False
@@ -251,6 +253,9 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[1 : at + 1]))
     if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word) and not named:
         return False  # "under the sofa cushions", but "as quiet as a cat the burglar climbs in"
+    feels = is_adjective(tokens[0].low) and len(tokens) > 1 and tokens[1].low in grammar().prepositions
+    if feels and tokens[at].text[:1].islower() and is_noun(word) and not named:
+        return False  # "anxious about the exam results"
     if word == base:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = _goes_on(after) or after in (",", "and")
@@ -259,16 +264,19 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         acts = not is_noun(word) or goes_on or (ends and led)
         two = any(token.low == "and" and two_people(tokens[: place + 1], of) for of, token in enumerate(tokens[:at]))
         return (past(base) == base and named) or two or (is_plural(before) and acts)
-    return not (is_noun(word) and word.endswith("s")) or _goes_on(after) or is_adjective(after) or is_noun(after)
+    rests = after.endswith("ing") and before in theme_words()["people"]  # "the father stands swaying"
+    plain = not (is_noun(word) and word.endswith("s")) or rests
+    return plain or _goes_on(after) or is_adjective(after) or is_noun(after)
 
 
 def two_people(tokens: Sequence[Token], joint: int) -> bool:
-    """Whether "and", which stands there, joins two people who do something together: "Marta and her son | argue"."""
+    """Whether "and", which stands there, joins two people who do something: "Marta and her husband | argue"."""
     people, end = theme_words()["people"], joint + 1
     if not joint or not (tokens[joint - 1].low in people or tokens[joint - 1].text[:1].isupper()):
         return False
     end += tokens[end : end + 1] != [] and tokens[end].low in grammar().marks
     named = tokens[end : end + 1] and (tokens[end].low in people or tokens[end].text[:1].isupper())
+    end += tokens[end + 1 : end + 2] != [] and tokens[end].low in people and tokens[end + 1].text[:1].isupper()
     after = tokens[end + 1].low if end + 1 < len(tokens) else ""
     base = verb_of(after)
     acts = (bool(base) and after in (base, past(base))) or after in FLOATING | grammar().auxiliaries

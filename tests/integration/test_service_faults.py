@@ -91,6 +91,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", "-l", folder], check=True)
 
 
+@pytest.mark.sweep
 def test_on_a_full_disk_one_is_told_so_and_stories_wait_until_there_is_room(small_disk: Path, tmp_path: Path) -> None:
     data = small_disk / "data"
     with RunningService(data, log=tmp_path / "service.log") as service, service.client() as client:
@@ -230,6 +231,7 @@ def test_ctrl_c_reaches_everybody_and_nobody_is_started_again(fragile: RunningSe
     fragile.stop()
 
 
+@pytest.mark.sweep
 def test_two_workers_cannot_have_one_name(service: RunningService) -> None:
     while not service.worker_pids():
         time.sleep(0.1)

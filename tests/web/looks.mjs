@@ -5,12 +5,33 @@ import { complaints, overhang, scene, until } from "./browser.mjs";
 
 const SIZES = [[390, 844], [820, 1180], [1440, 900]];
 
+/** Where what one does next with a story must be seen as it opens. */
+const NEXT_SIZES = [[1280, 800], [1440, 900], [390, 844]];
+
 const FORM_SIZES = [[1200, 800], [1366, 768], [1440, 900], [390, 844]];
 
 async function visit(page, address, look) {
   await page.goto("about:blank");
   await page.emulateMedia({ colorScheme: look });
   await page.goto(address);
+}
+
+/** How far down what one does next reaches, and how many rows of the script are whole, without scrolling. */
+async function next(page) {
+  const told = [];
+  for (const [width, height] of NEXT_SIZES) {
+    await page.setViewportSize({ width, height });
+    await page.evaluate(() => window.scrollTo(0, 0));
+    await page.waitForTimeout(150);
+    const [bottom, rows, film] = await page.evaluate(() => {
+      const down = (selector) => [...document.querySelectorAll(selector)].map((one) => one.getBoundingClientRect().bottom);
+      const edge = Math.min(down(".cues")[0], window.innerHeight);
+      return [Math.max(...down(".next button")), down(".cue").filter((one) => one <= edge).length, down(".scrub")[0]];
+    });
+    const named = await page.getByRole("group", { name: "What next" }).getByRole("button").evaluateAll((all) => all.map((one) => one.ariaLabel ?? one.textContent));
+    told.push({ width, height, bottom, rows, film, named });
+  }
+  return told;
 }
 
 /** How the form is laid out where one looks at it: boxes of the window, CSS pixels. */
@@ -73,5 +94,5 @@ await scene(async (page, id) => {
     camera: window.sims.state().camera,
     running: document.getAnimations().filter((animation) => animation.playState === "running" && animation.effect.getComputedTiming().duration > 10).length,
   }));
-  return { shown, still: { ...still, early }, form: await form(page) };
+  return { shown, still: { ...still, early }, next: await next(page), form: await form(page) };
 });

@@ -186,6 +186,7 @@ def test_words_that_are_told_and_not_acted_can_be_read(watched: dict[str, Any], 
         words(text[one["start"] : one["end"]]) for one in story["thoughts"]
     ]
     assert watched["unseen"], "the theme has something that is only told"
+    assert words(watched["note"]) == "Slanted words are told and not seen: the film does not show them."
     for one in watched["unseen"]:
         # Blanks at which a line breaks have no width.
         assert one["box"] > 0.9 * one["letters"] > 0, one
@@ -205,7 +206,8 @@ def test_how_one_sits_is_changed_beside_the_film_and_seen(
     client.post(f"/v1/stories/{changed['take']}/cancel")
     assert take["derived_from"] == story["id"]
     assert take["reused"] == at - 1, "all before the walk to the seat is the old story's"
-    assert f"its first {at - 1} moments are the same" in changed["origin"]
+    assert f"changed: moment {at + 1} (how)" in changed["origin"]
+    assert f"Acted again from moment {at} on, so that it leads to what follows now" in changed["origin"]
     assert changed["keyframe"] == at, "it plays from the first change"
     assert [one["caption"] for one in take["keyframes"]] == [
         changed["caption"] if one["index"] == at else one["caption"] for one in story["keyframes"]
@@ -267,6 +269,13 @@ def test_it_is_fine_on_every_screen_by_day_and_by_night_and_for_those_who_want_i
     assert still["time"] == still["early"]
     assert still["camera"]["mode"] == "orbit"
     assert still["running"] == 0, "nothing moves that was not asked to"
+
+
+def test_what_one_does_next_is_seen_beside_the_film_without_scrolling(looked: dict[str, Any]) -> None:
+    for seen in looked["next"]:
+        assert seen["named"][:2] == ["Change the script", "Download"], seen
+        assert max(seen["bottom"], seen["film"]) <= seen["height"], seen
+        assert seen["rows"] >= 3 or seen["width"] < 600, "the script stands there too"
 
 
 def test_the_script_is_changed_in_sight_of_what_belongs_together(looked: dict[str, Any]) -> None:

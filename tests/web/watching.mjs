@@ -196,5 +196,5 @@ await scene(async (page) => {
     clicked.push({ words: await page.locator(".told .moment").nth(sentence).textContent(), ...(await lit(page)) });
   }
   const story = (await state(page)).storyId;
-  return { grown, drawn, follow, colours, bounds, told, clicked, unseen: await unseen(page), story, changed: await changed(page) };
+  return { grown, drawn, follow, colours, bounds, told, clicked, unseen: await unseen(page), note: await page.locator(".told-note").innerText(), story, changed: await changed(page) };
 });

@@ -21,6 +21,8 @@ const FIELDS: readonly (readonly [string, (keyframe: Keyframe) => string])[] = [
   ["mood", ({ emotion }) => emotion],
   ["where", placeWords],
 ];
+/** What stands where a moment is missing. */
+export const NOT_IN_IT = "is not in it";
 /** What leaving a moment out costs beside changing all of one: two that differ in half of their words are still one. */
 const LEFT_OUT = 0.6;
 
@@ -59,7 +61,7 @@ export function firstApart(pairs: readonly Pair[]): number {
 export function differences(one: Story, other: Story): Difference[] {
   const of = (what: string, read: (story: Story) => string): Difference[] => (read(one) === read(other) ? [] : [[what, read(one), read(other)]]);
   return [
-    ...of("Moved by", moverOf),
+    ...(one.backend === other.backend ? [] : of("Moved by", moverOf)),
     ...of("Seed", ({ seed }) => String(seed)),
     ...of("Played by", ({ character }) => `${character.name}, ${character.member || character.age}, ${character.height.toFixed(2)} m, ${character.outfit}`),
     ...of("Played in", ({ home }) => home?.rooms.map(({ layout_id }) => layout_id).join(", ") ?? "…"),
@@ -79,4 +81,4 @@ function ofMoment({ one, other, same }: Pair, left: Story, right: Story): Differ
   return FIELDS.filter(([, read]) => read(mine) !== read(theirs)).map(([what, read]) => [`${number}, ${what}`, read(mine), read(theirs)]);
 }
 
-const told = (keyframe: Keyframe | undefined): string => (keyframe ? capital(FIELDS.map(([, read]) => read(keyframe)).join(", ")) : "is not in it");
+const told = (keyframe: Keyframe | undefined): string => (keyframe ? capital(FIELDS.map(([, read]) => read(keyframe)).join(", ")) : NOT_IN_IT);

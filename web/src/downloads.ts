@@ -30,7 +30,7 @@ export function showDownloads(section: HTMLElement, story: Story): boolean {
   if (!there.length) return false;
   fill(
     section,
-    h("h2", {}, "Take it with you"),
+    h("h2", {}, "Download"),
     h("ul", { class: "files" }, ...(state === "succeeded" ? [filmItem(id, `${stem}.mp4`), usdItem(id, `${stem}.usd`)] : []), ...there.map((file) => h("li", {}, h("a", { href: file.url, download: file.name }, icon("down"), file.name), h("span", { class: "hint" }, file.words)))),
   );
   return true;

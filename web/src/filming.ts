@@ -5,7 +5,7 @@ import { fill, h, icon } from "./dom";
 import { announce } from "./live";
 
 const LOOK_MS = 1000;
-const WORDS = "the story filmed, with its title and its told words, for any player";
+const WORDS = "the story filmed, with its title and its told words, for any player; slanted words are told and not seen";
 
 /** An item of a list of files. It looks after itself, and stops when it is taken from the page. */
 export function filmItem(id: string, name: string): HTMLLIElement {

@@ -29,6 +29,7 @@ function route(): void {
   clear();
   const room = /^#\/rooms(?:\/(.*))?$/.exec(path);
   const captions = path === "#/captions";
+  storiesLink.ariaCurrent = id || room || captions ? null : "page";
   roomsLink.ariaCurrent = room ? "page" : null;
   captionsLink.ariaCurrent = captions ? "page" : null;
   if (id) {
@@ -118,7 +119,7 @@ function askForKey(): void {
 async function start(): Promise<void> {
   const session = await getSession().catch(() => ({ required: false, authenticated: false }));
   const out = h("button", { type: "button", class: "plain small", onclick: () => void logOut().then(askForKey) }, "Leave");
-  fill(framed("tools"), roomsLink, captionsLink, session.authenticated && session.required ? out : null, appearance);
+  fill(framed("tools"), storiesLink, roomsLink, captionsLink, session.authenticated && session.required ? out : null, appearance);
   if (session.required && !session.authenticated) askForKey();
   else route();
 }
@@ -162,6 +163,7 @@ function seen(): Seen {
 }
 
 const appearance = appearanceButton();
+const storiesLink = h("a", { href: "#/", class: "button quiet small" }, "Stories");
 const roomsLink = h("a", { href: "#/rooms", class: "button quiet small" }, "Rooms");
 const captionsLink = h("a", { href: "#/captions", class: "button quiet small" }, "Captions");
 Object.defineProperty(window, "sims", { value: Object.freeze({ state: seen }) });

@@ -23,11 +23,12 @@ export function showMaking(section: HTMLElement, story: Story): boolean {
 function player({ character }: Story): HTMLElement[] {
   if (!character.member) return [];
   const worn = character.outfit.replaceAll("_", " ");
-  return [h("p", { class: "player" }, `Played by ${capital(character.member)}: ${character.age}, ${character.height.toFixed(2)} m, in ${worn} clothes.`)];
+  return [h("p", { class: "player" }, `Played by ${capital(character.member)}: ${character.age}, ${character.height.toFixed(2)} m; wears: ${worn}.`)];
 }
 
 function beats(story: Story): HTMLElement[] {
-  if (!story.beats.length) return [];
+  // What became of them is in the report; here is what was found for them.
+  if (!story.beats.length || (story.report && !story.short_scripts.length)) return [];
   const asked = story.beats.map((beat, index) => ({ beat, index })).filter(({ beat }) => beat.kind !== "undone");
   const undone = story.beats.filter((beat) => beat.kind === "undone");
   const loose = story.short_scripts.filter((script) => !story.beats[script.beat]);

@@ -19,6 +19,9 @@ const OUTCOMES: Readonly<Record<Outcome, Shown>> = {
   undone: { mark: "∅", word: "Left undone", meaning: "the theme says that it does not happen" },
 };
 
+/** What the mark of a beat that something stands for says already; why that is may stand behind it. */
+const IN_ITS_PLACE = /^the body is seen doing something else in its place(, )?/;
+
 export function outcomeOf(beat: Beat): Outcome {
   if (beat.kind === "undone") return "undone";
   if (beat.acted) return "acted";
@@ -34,9 +37,9 @@ export function badge(outcome: Outcome): HTMLElement {
   return h("span", { class: "outcome-badge", "data-outcome": outcome, title: meaning }, h("i", { "aria-hidden": "true" }, mark), word);
 }
 
-/** What is not shown of a beat, in words; empty where all of it is. */
+/** What is not shown of a beat, or why something else is, in words; empty where there is nothing to say. */
 export function lacking(beat: Beat): string {
-  if (beat.stood_for) return "";
+  if (beat.stood_for) return beat.why.replace(IN_ITS_PLACE, "");
   if (!beat.acted) return beat.why;
   if (!beat.unshown.length) return "";
   return `not shown of it: ${beat.unshown.map((part) => `“${part}”`).join(", ")}`;
@@ -52,10 +55,22 @@ export function legend(beats: readonly Beat[], figures: readonly KeyframeFigures
   return h("dl", { class: "outcome-legend", "aria-label": "What these words mean" }, ...order.flatMap((outcome) => [h("dt", {}, badge(outcome)), h("dd", {}, OUTCOMES[outcome].meaning)]));
 }
 
+/** What a moment shows instead of what was asked for, and why or for what. */
+export interface Mark {
+  readonly outcome: Outcome;
+  readonly words: string;
+}
+
+/** What is done in another way than a caption says. */
+export const otherwiseWords = ({ performed_as: as, notes }: KeyframeFigures): string[] => [...(as ? [`done as “${as}”, which the body knows`] : []), ...(notes ?? [])];
+
 /** The moments that show something else than was asked for: what stands for a beat, and what is done in another way. */
-export function marks({ keyframes, beats, report }: Story): Map<number, Outcome> {
-  const found = new Map<number, Outcome>();
-  for (const { index, beat } of keyframes) if (beat !== null && beats[beat]?.stood_for) found.set(index, "stands");
-  for (const figures of report?.keyframes ?? []) if (isOtherwise(figures)) found.set(figures.keyframe, "otherwise");
+export function marks({ keyframes, beats, report }: Story): Map<number, Mark> {
+  const found = new Map<number, Mark>();
+  for (const { index, beat } of keyframes) {
+    const asked = beat === null ? undefined : beats[beat];
+    if (asked?.stood_for) found.set(index, { outcome: "stands", words: `“${asked.text}”` });
+  }
+  for (const figures of report?.keyframes ?? []) if (isOtherwise(figures)) found.set(figures.keyframe, { outcome: "otherwise", words: otherwiseWords(figures).join(", ") });
   return found;
 }

@@ -4,7 +4,7 @@ import type { Beat, Keyframe, KeyframeFigures, Report, Skill, Story } from "./ap
 import { fill, h } from "./dom";
 import { placeWords } from "./furniture-words";
 import { moverList, type Phase } from "./movers";
-import { badge, isOtherwise, lacking, legend, outcomeOf } from "./outcomes";
+import { badge, isOtherwise, lacking, legend, otherwiseWords, outcomeOf } from "./outcomes";
 import { beatsWords, capital, centimetres, count, isAsked, percent, SKILL_WORDS } from "./words";
 
 /** From these on a moment is worth a remark, metres. */
@@ -114,8 +114,7 @@ function remark(figure: KeyframeFigures, keyframe: Keyframe | undefined, seek: (
   if (!figure.reached) said.push(`not reached${figure.reason ? `: ${figure.reason}` : ""}`);
   if (figure.contact_error !== null && figure.contact_error > WIDE_CONTACT) said.push(`${centimetres(figure.contact_error)} from its place`);
   if (figure.pen_max > DEEP) said.push(`up to ${centimetres(figure.pen_max)} inside furniture`);
-  if (figure.performed_as) said.push(`done as “${figure.performed_as}”, which the body knows`);
-  said.push(...(figure.notes ?? []));
+  said.push(...otherwiseWords(figure));
   if (!said.length) return [];
   const go = momentLink(figure.keyframe, figure.skill, keyframe, seek);
   return [h("li", {}, ...(isOtherwise(figure) ? [badge("otherwise"), " "] : []), go, ` – ${said.join(", ")}.`)];

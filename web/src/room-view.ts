@@ -178,5 +178,5 @@ function files(room: Room): HTMLElement {
     [`${stem}.glb`, roomUrl(room.id, "/scene.glb"), "the room in three dimensions, for any glTF viewer"],
     [`${stem}.json`, roomUrl(room.id), "the room in our own format, with its places and its graph"],
   ];
-  return h("section", {}, h("h2", {}, "Take it with you"), h("ul", { class: "files" }, ...all.map(([name, url, words]) => h("li", {}, h("a", { href: url, download: name }, icon("down"), name), h("span", { class: "hint" }, words)))));
+  return h("section", {}, h("h2", {}, "Download"), h("ul", { class: "files" }, ...all.map(([name, url, words]) => h("li", {}, h("a", { href: url, download: name }, icon("down"), name), h("span", { class: "hint" }, words)))));
 }

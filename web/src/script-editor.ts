@@ -61,7 +61,7 @@ export class ScriptEditor {
     this.#backend = h("select", { id: "take-backend", "aria-describedby": this.#mover.id, onchange: () => this.#stage({ backend: this.#backend.value }) }, ...words.backends.map((one) => h("option", { value: one.backend, title: one.about }, one.about.split(/ ?[(:]/, 1)[0])));
     this.#rooms = h("input", { id: "take-home", class: "home", list: "take-rooms", placeholder: "its own home", autocomplete: "off", spellcheck: false, onfocus: () => void this.#name(), oninput: () => (this.#play.disabled = false), onchange: () => this.#stage({ rooms: this.#rooms.value.trim() }) });
     const upload = new Upload((ids) => this.#stage({ rooms: ids.join(", ") }));
-    const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Leave it");
+    const leave = h("button", { type: "button", class: "plain small", onclick: () => this.#left() }, "Close");
     fill(
       this.element,
       h("div", { class: "row editor-head" }, h("h2", {}, "Change the script"), leave),
@@ -80,7 +80,7 @@ export class ScriptEditor {
   }
 
   focus(): void {
-    this.#list.querySelector("select")?.focus();
+    this.#list.querySelector("select")?.focus({ preventScroll: true });
   }
 
   /** Offer the rooms there are. */
@@ -179,7 +179,7 @@ export class ScriptEditor {
         choose("skill", "what is done", SKILLS.map((skill) => [skill, capital(SKILL_WORDS[skill])] as const), draft.skill, (value) => this.#reskill(at, value as Skill)),
         choose("object_id", "where", this.#places(draft), draft.object_id ?? FLOOR, (value) => this.#do(placed(this.#now.script, at, value || null), `${name}: ${this.#nameOf(value)}`)),
         choose("emotion", "in which mood", EMOTIONS.map((emotion) => [emotion, emotion] as const), draft.emotion, (emotion) => this.#do(changed(this.#now.script, at, { emotion }), `${name}: ${emotion}`)),
-        captionField(`${name}: how`, at, draft, this.#captionsOf(draft.skill).id, (caption) => this.#recaption(at, caption)),
+        captionField(`${name}: how`, at, draft, this.#captionsOf(draft.skill).id, () => (this.#play.disabled = false), (caption) => this.#recaption(at, caption)),
         h(
           "div",
           { class: "draft-moves" },
@@ -289,15 +289,17 @@ export class ScriptEditor {
       this.#problem.textContent = left.length ? left.map(capital).join(". ") : capital(error.detail || error.title);
     }
     first?.focus();
+    // What is wrong stands under the field, where a long script may have its edge.
+    first?.closest("li")?.scrollIntoView({ block: "nearest" });
     announce(error.detail);
   }
 }
 
 /**
  * A caption, looked for by typing some of it: what is listed holds what is typed, and all of them are listed before that.
- * It is taken on Enter, on leaving, or when it is picked from the list.
+ * It is taken on Enter, on leaving, or when it is picked from the list; `typed` is told of every letter before that.
  */
-function captionField(label: string, at: number, draft: Draft, list: string, act: (caption: string) => void): HTMLInputElement {
+function captionField(label: string, at: number, draft: Draft, list: string, typed: () => void, act: (caption: string) => void): HTMLInputElement {
   let { caption } = draft;
   const take = (): void => {
     if (!field.value || field.value === caption) return;
@@ -323,6 +325,7 @@ function captionField(label: string, at: number, draft: Draft, list: string, act
     // Picked from the list: other than letters that are typed.
     oninput: (event: Event) => {
       if (!(event instanceof InputEvent) || event.inputType === "insertReplacementText") take();
+      else typed();
     },
   });
   return field;

@@ -3,12 +3,14 @@
 import type { Keyframe } from "./api";
 import { h } from "./dom";
 import { placeWords } from "./furniture-words";
-import { badge, type Outcome } from "./outcomes";
+import { badge, type Mark } from "./outcomes";
+import { Reading } from "./reading";
 import { clock } from "./timing";
 import { SKILL_WORDS } from "./words";
 
 export class ScriptList {
   readonly element = h("ol", { class: "cues" });
+  readonly #reading = new Reading(this.element);
   readonly #seek: (keyframe: number) => void;
   #rows: { item: HTMLElement; button: HTMLButtonElement; words: HTMLElement; time: HTMLElement }[] = [];
   #current: number | null = null;
@@ -18,7 +20,7 @@ export class ScriptList {
   }
 
   /** `marks` has the moments that show something else than was asked for, as far as that is known. */
-  update(keyframes: readonly Keyframe[], fps: number, written: boolean, marks: ReadonlyMap<number, Outcome>): void {
+  update(keyframes: readonly Keyframe[], fps: number, written: boolean, marks: ReadonlyMap<number, Mark>): void {
     while (this.#rows.length > keyframes.length) this.#rows.pop()?.item.remove();
     const fresh = this.#rows.length;
     for (const [index, keyframe] of keyframes.entries()) {
@@ -36,7 +38,7 @@ export class ScriptList {
     this.element.append(item);
   }
 
-  #show(index: number, keyframe: Keyframe, fps: number, mark: Outcome | undefined): void {
+  #show(index: number, keyframe: Keyframe, fps: number, mark: Mark | undefined): void {
     const { item, button, words, time } = this.#rows[index]!;
     const made = keyframe.start !== null;
     button.disabled = !made;
@@ -46,7 +48,7 @@ export class ScriptList {
     words.replaceChildren(
       h("b", {}, keyframe.caption),
       h("small", {}, `${SKILL_WORDS[keyframe.skill]} · ${placeWords(keyframe)} · ${keyframe.emotion}${missed}`),
-      ...(mark ? [badge(mark)] : []),
+      ...(mark ? [h("span", { class: "cue-mark" }, badge(mark.outcome), " ", h("small", {}, mark.words))] : []),
     );
     time.textContent = made ? clock(keyframe.start / fps) : "";
   }
@@ -55,6 +57,8 @@ export class ScriptList {
     if (keyframe === this.#current) return;
     this.#rows[this.#current ?? -1]?.button.removeAttribute("aria-current");
     this.#current = keyframe;
-    this.#rows[keyframe ?? -1]?.button.setAttribute("aria-current", "true");
+    const row = this.#rows[keyframe ?? -1];
+    row?.button.setAttribute("aria-current", "true");
+    if (row) this.#reading.reveal(row.item);
   }
 }

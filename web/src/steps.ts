@@ -5,6 +5,11 @@ import { fill, h } from "./dom";
 import { announce } from "./live";
 import { capital, STAGE_SHORT, STAGE_WORDS, STAGES } from "./words";
 
+/** Milliseconds of waiting after which it is said why it may take long. */
+const LONG_WAIT_MS = 6000;
+const WAITING = "waiting for a free worker";
+const STARTING = "waiting; a worker needs up to a minute to start";
+
 export class Steps {
   readonly element = h("div", { class: "steps", hidden: true });
   readonly #words = h("p", { class: "steps-words" });
@@ -15,6 +20,9 @@ export class Steps {
   /** The stage that is shown, of STAGES. */
   #at = -1;
   #story: Story | null = null;
+  readonly #born = performance.now();
+  /** Whether it will be looked again. */
+  #looks = false;
 
   constructor(cancel: () => void) {
     this.#cancel = h("button", { type: "button", class: "plain small", onclick: cancel }, "Stop");
@@ -34,7 +42,7 @@ export class Steps {
     const at = stage === null ? -1 : STAGES.indexOf(stage);
     if (at < this.#at) return;
     this.#at = at;
-    const words = stage === null ? "waiting for a free worker" : STAGE_WORDS[stage];
+    const words = stage === null ? this.#waitWords() : STAGE_WORDS[stage];
     const where = stage === "move" ? this.#moments() : "";
     this.#words.textContent = this.#broken ? "The connection is lost; trying again …" : `${capital(words)}${where} …`;
     this.#bar.value = progress;
@@ -44,6 +52,14 @@ export class Steps {
     }
     this.#line.style.setProperty("--share", String(stage === "move" ? this.#made() : 0.5));
     if (!this.#broken) announce(capital(words));
+  }
+
+  #waitWords(): string {
+    const left = LONG_WAIT_MS - (performance.now() - this.#born);
+    if (left <= 0) return STARTING;
+    if (!this.#looks) window.setTimeout(() => this.#at < 0 && !this.element.hidden && this.show(null, 0), left + 50);
+    this.#looks = true;
+    return WAITING;
   }
 
   /** Say that nothing is heard, or is heard again. */

@@ -1,6 +1,7 @@
 /** One story on the page: film, text, script, report; kept up to date while it is being made. */
 
 import { ApiError, cancelStory, deleteStory, getStory, type Story } from "./api";
+import { isStill } from "./appearance";
 import { fill, h } from "./dom";
 import { showDownloads } from "./downloads";
 import { follow } from "./events";
@@ -8,14 +9,18 @@ import { Film } from "./film";
 import { confirmRemoval } from "./gallery";
 import { announce } from "./live";
 import { showMaking } from "./making";
+import { NextSteps } from "./next-steps";
+import { showOrigin } from "./origin";
 import { marks } from "./outcomes";
 import { showReport } from "./report";
 import { ScriptList } from "./script-list";
 import { Steps } from "./steps";
 import { Telling } from "./telling";
-import { capital, count, takeWords } from "./words";
+import { capital, count } from "./words";
 
 const AGAIN_MS = 2500;
+/** Where the script stands beside the film, as in story.css. */
+const WIDE = window.matchMedia("(min-width: 70rem)");
 
 export class StoryView {
   readonly element = h("article", { class: "story" });
@@ -29,13 +34,22 @@ export class StoryView {
   readonly #script: ScriptList;
   readonly #title = h("h1", {}, "…");
   readonly #theme = h("p", { class: "theme" });
-  readonly #origin = h("p", { class: "origin", hidden: true });
-  readonly #change = h("button", { type: "button", class: "plain small", hidden: true, onclick: () => void this.#edit() }, "Change the script");
-  readonly #book = h("section", { class: "book", "aria-label": "The told story" });
+  readonly #derived = h("p", { class: "origin", hidden: true });
+  readonly #next = new NextSteps(() => void this.#edit(), () => this.#toFiles());
+  readonly #book = h("section", { class: "book", "aria-label": "The story and its script" });
   readonly #foot = h("div", { class: "row foot" });
   readonly #sections: { readonly script: HTMLElement; readonly report: HTMLElement; readonly making: HTMLElement; readonly files: HTMLElement };
   readonly #left: () => void;
+  /** A theme that is longer than the heading has lines for is seen to go on, and can be scrolled by keys too. */
+  readonly #lines = new ResizeObserver(() => {
+    const cut = this.#theme.scrollHeight > this.#theme.clientHeight + 1;
+    this.#theme.classList.toggle("cut", cut);
+    this.#theme.tabIndex = cut ? 0 : -1;
+  });
   #story: Story | null = null;
+  /** What it is a take of, once that is fetched. */
+  #origin: Story | null = null;
+  #originAsked = false;
   #unfollow: (() => void) | null = null;
   #fetching = false;
   #again = false;
@@ -66,16 +80,17 @@ export class StoryView {
     }
     const section = (name: string): HTMLElement => h("section", { class: name, hidden: true });
     this.#sections = { script: section("script"), report: section("report"), making: section("making"), files: section("downloads") };
-    fill(this.#sections.script, h("div", { class: "row spread" }, h("h2", {}, "The script"), this.#change), this.#script.element);
-    fill(this.#book, this.#telling.element);
+    fill(this.#sections.script, h("h2", {}, "The script"), this.#script.element);
+    this.#read();
     fill(
       this.element,
-      h("header", { class: "title" }, this.#title, this.#theme, this.#origin),
+      h("header", { class: "title" }, this.#title, this.#theme),
       this.#steps.element,
       this.film.element,
-      this.#book,
-      h("div", { class: "backstage" }, this.#sections.script, h("div", { class: "column" }, this.#sections.report, this.#sections.files, this.#foot), this.#sections.making),
+      h("div", { class: "beside" }, this.#next.element, this.#derived, this.#book),
+      h("div", { class: "backstage" }, this.#sections.report, this.#sections.making, h("div", { class: "column" }, this.#sections.files, this.#foot)),
     );
+    this.#lines.observe(this.#theme);
     void this.refresh();
   }
 
@@ -105,6 +120,7 @@ export class StoryView {
   dispose(): void {
     this.#live = false;
     this.#unfollow?.();
+    this.#lines.disconnect();
     if (!this.#handed) this.film.dispose();
   }
 
@@ -117,44 +133,60 @@ export class StoryView {
     this.#theme.textContent = story.theme ?? "";
     document.title = `${story.title ?? "A story"} · SIMS stories`;
     this.element.classList.toggle("without-text", !story.text && !making);
+    this.element.classList.toggle("alone", !story.text && !story.keyframes.length && !making);
     this.#steps.update(story);
     this.#telling.update(story);
     this.#script.update(story.keyframes, story.motion.fps, before !== null, marks(story));
     this.film.update(story);
     const seek = (keyframe: number): void => this.film.seekKeyframe(keyframe);
-    this.#showOrigin(story);
+    void this.#showOrigin(story);
     this.#sections.script.hidden = story.keyframes.length === 0;
-    this.#change.hidden = !story.home;
+    this.#next.change.hidden = !story.home;
     if (this.#goesOn && story.home && !making) void this.#edit(false);
     if (!making || before?.stage !== story.stage) {
       this.#sections.report.hidden = !showReport(this.#sections.report, story, seek);
       this.#sections.making.hidden = !showMaking(this.#sections.making, story);
-      this.#sections.files.hidden = making || !showDownloads(this.#sections.files, story);
+      this.#next.files.hidden = this.#sections.files.hidden = making || !showDownloads(this.#sections.files, story);
     }
     if (making && !this.#unfollow) this.#follow();
     if (!making) this.#close(story, before);
   }
 
-  /** What a take derives from, and what of it is the same. */
-  #showOrigin(story: Story): void {
-    this.#origin.hidden = !story.derived_from;
-    if (!story.derived_from) return;
-    const same = story.reused ? `; its first ${count(story.reused, "moment")} ${story.reused === 1 ? "is" : "are"} the same` : "";
-    fill(this.#origin, `${takeWords(story)}, made from `, h("a", { href: `#/stories/${story.derived_from}` }, "the one before"), `${same}. `, h("a", { href: `#/stories/${story.id}?beside=${story.derived_from}` }, "See both side by side"));
+  /** What a take derives from, and what of it is another. */
+  async #showOrigin(story: Story): Promise<void> {
+    showOrigin(this.#derived, story, this.#origin);
+    if (!story.derived_from || this.#originAsked) return;
+    this.#originAsked = true;
+    try {
+      this.#origin = await getStory(story.derived_from);
+    } catch {
+      return; // It is no more, or nobody answers: the line says what is known without it.
+    }
+    if (this.#story) showOrigin(this.#derived, this.#story, this.#origin);
+  }
+
+  /** The told story and its script beside the film. */
+  #read(): void {
+    fill(this.#book, this.#telling.element, this.#sections.script);
+  }
+
+  #toFiles(): void {
+    this.#sections.files.scrollIntoView({ block: "start", behavior: isStill() ? "auto" : "smooth" });
+    this.#sections.files.querySelector<HTMLElement>("button, a")?.focus({ preventScroll: true });
   }
 
   /** Beside the film the script can be changed; its code is fetched when it is first asked for. */
   async #edit(asked = true): Promise<void> {
     if (!this.#story) return;
     this.#goesOn = false;
-    this.#change.disabled = true;
+    this.#next.change.disabled = true;
     try {
       const { ScriptEditor } = await import("./script-editor");
       const close = (): void => {
         this.element.classList.remove("editing");
-        fill(this.#book, this.#telling.element);
-        this.#change.disabled = false;
-        this.#change.focus();
+        this.#read();
+        this.#next.change.disabled = false;
+        this.#next.change.focus();
       };
       const editor = await ScriptEditor.open(this.#story, (take, from, elsewhere) => this.#goOn(take.id, from, elsewhere), close);
       if (!this.#live) return;
@@ -162,10 +194,10 @@ export class StoryView {
       fill(this.#book, editor.element);
       if (!asked) return;
       this.film.player.pause();
-      this.element.scrollIntoView({ block: "start" });
+      (WIDE.matches ? this.element : this.#book).scrollIntoView({ block: "start" });
       editor.focus();
     } catch (error) {
-      this.#change.disabled = false;
+      this.#next.change.disabled = false;
       announce(error instanceof Error ? error.message : String(error));
     }
   }
@@ -221,8 +253,10 @@ export class StoryView {
       window.setTimeout(() => this.#live && void this.refresh(), AGAIN_MS);
       return;
     }
-    this.#title.textContent = error.status === 404 ? "No such story" : error.title;
-    this.film.notice(h("div", { class: "outcome" }, h("p", {}, error.detail)), h("a", { href: "#/", class: "button primary" }, "To the stories there are"));
+    const gone = error.status === 404;
+    this.element.classList.add("alone");
+    this.#title.textContent = gone ? "No such story" : error.title;
+    this.film.notice(h("div", { class: "outcome" }, h("p", {}, gone ? "It was removed, or the link to it is not whole." : error.detail)), h("a", { href: "#/", class: "button primary" }, "To the stories there are"));
   }
 
   async #cancel(): Promise<void> {

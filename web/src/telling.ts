@@ -1,12 +1,9 @@
 /** The told story: the words that are being acted are lit and kept in sight; words lead back to their moment. */
 
 import type { Story } from "./api";
-import { isStill } from "./appearance";
 import { fill, h } from "./dom";
+import { Reading } from "./reading";
 import { paragraphs, spanOf, type Piece, type Span } from "./spans";
-
-/** Milliseconds after a reader's own scrolling before the text follows the film again. */
-const READING_MS = 6000;
 
 /** Told words; slanted where the body is not seen doing what they say. */
 function words({ text, thought }: Piece): string | HTMLElement {
@@ -15,19 +12,21 @@ function words({ text, thought }: Piece): string | HTMLElement {
 
 export class Telling {
   readonly element: HTMLElement;
+  readonly #told: HTMLElement;
+  /** Says what slanted words are, where there are any. */
+  readonly #note = h("p", { class: "fine told-note", hidden: true }, h("em", { class: "unseen" }, "Slanted words"), " are told and not seen: the film does not show them.");
+  readonly #reading: Reading;
   readonly #seek: (keyframe: number) => void;
   #text: string | null = null;
   #spans: readonly Span[] = [];
   #sentences = new Map<number, HTMLElement[]>();
   #current: number | null = null;
-  #read = -Infinity;
 
   constructor(seek: (keyframe: number) => void) {
     this.#seek = seek;
-    this.element = h("div", { class: "told", role: "group", "aria-label": "The story as it is told. Arrow up and down go from moment to moment", onkeydown: (event: KeyboardEvent) => this.#onKey(event) });
-    for (const name of ["wheel", "touchmove", "pointerdown"]) {
-      this.element.addEventListener(name, () => (this.#read = performance.now()), { passive: true });
-    }
+    this.#told = h("div", { class: "told", role: "group", "aria-label": "The story as it is told. Arrow up and down go from moment to moment", onkeydown: (event: KeyboardEvent) => this.#onKey(event) });
+    this.#reading = new Reading(this.#told);
+    this.element = h("div", { class: "telling" }, this.#told, this.#note);
   }
 
   update(story: Story): void {
@@ -37,9 +36,10 @@ export class Telling {
     this.#sentences.clear();
     this.#current = null;
     const cut = story.text ? paragraphs(story.text, story.spans, story.thoughts) : [];
-    fill(this.element, ...cut.map((pieces) => h("p", {}, ...pieces.map((piece) => (piece.span === null ? words(piece) : this.#sentence(words(piece), piece.span))))));
-    const first = this.element.querySelector<HTMLElement>(".moment");
+    fill(this.#told, ...cut.map((pieces) => h("p", {}, ...pieces.map((piece) => (piece.span === null ? words(piece) : this.#sentence(words(piece), piece.span))))));
+    const first = this.#told.querySelector<HTMLElement>(".moment");
     if (first) first.tabIndex = 0;
+    this.#note.hidden = !cut.some((pieces) => pieces.some(({ thought }) => thought));
   }
 
   /** Light the words of a keyframe. */
@@ -52,7 +52,7 @@ export class Telling {
     for (const sentence of now) sentence.setAttribute("aria-current", "true");
     if (!now[0]) return;
     this.#rove(now[0]);
-    this.#reveal(now[0]);
+    this.#reading.reveal(now[0]);
   }
 
   #sentencesOf(span: number | null): HTMLElement[] {
@@ -78,7 +78,7 @@ export class Telling {
 
   #onKey(event: KeyboardEvent): void {
     if (event.key !== "ArrowDown" && event.key !== "ArrowUp") return;
-    const all = [...this.element.querySelectorAll<HTMLElement>(".moment")];
+    const all = [...this.#told.querySelectorAll<HTMLElement>(".moment")];
     const at = all.indexOf(document.activeElement as HTMLElement);
     const next = all[at + (event.key === "ArrowDown" ? 1 : -1)];
     if (at < 0 || !next) return;
@@ -89,16 +89,7 @@ export class Telling {
 
   /** One of the words is a tab stop, not all of them. */
   #rove(sentence: HTMLElement): void {
-    for (const other of this.element.querySelectorAll<HTMLElement>(".moment[tabindex='0']")) other.tabIndex = -1;
+    for (const other of this.#told.querySelectorAll<HTMLElement>(".moment[tabindex='0']")) other.tabIndex = -1;
     sentence.tabIndex = 0;
-  }
-
-  /** Scroll the text, never the page. */
-  #reveal(sentence: HTMLElement): void {
-    if (performance.now() - this.#read < READING_MS) return;
-    const box = this.element.getBoundingClientRect();
-    const place = sentence.getBoundingClientRect();
-    const middle = place.top + place.height / 2 - box.top - this.element.clientHeight * 0.42;
-    if (Math.abs(middle) > 24) this.element.scrollBy({ top: middle, behavior: isStill() ? "auto" : "smooth" });
   }
 }

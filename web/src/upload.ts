@@ -104,6 +104,7 @@ export class Upload {
     }
     this.#send.disabled = false;
     this.#send.textContent = "Bring it in";
+    this.#answer.scrollIntoView({ block: "nearest" });
   }
 
   #fail(title: string, details: readonly string[]): void {

@@ -25,6 +25,11 @@ test("a comparison begins at the moment that is another, or before the one that 
   expect(firstApart(align([WALK, SIT], [WALK, SIT]))).toBe(0);
 });
 
+test("who moved the body is the same while one of them has no report yet", () => {
+  const report = { moved_by: { procedural: "rules (procedural): no learned model" } } as unknown as Story["report"];
+  expect(differences(story({ report }), story({}))).toEqual([]);
+});
+
 test("whatever differs is named with what it is in each, and nothing else is", () => {
   expect(differences(story({}), story({}))).toEqual([]);
   const told = { moved_by: { procedural: "rules (procedural): no learned model", diffusion: "a motion diffusion model (diffusion)" } };

@@ -64,6 +64,7 @@ describe("outcomes", () => {
     expect(lacking(beat({ unshown: ["for her ladyship"] }))).toBe("not shown of it: “for her ladyship”");
     expect(lacking(MISSING)).toBe("no keyframe is left that shows it");
     expect([lacking(ACTED), lacking(STOOD)]).toEqual(["", ""]);
+    expect(lacking({ ...STOOD, why: "the body is seen doing something else in its place, no window that can be got to: it is done without one" })).toBe("no window that can be got to: it is done without one");
   });
 
   test("the legend explains what is used and nothing else; there is none where all is acted", () => {
@@ -78,7 +79,7 @@ describe("outcomes", () => {
   test("moments are marked by what they show", () => {
     const keyframes = [{ index: 0, beat: 0 }, { index: 1, beat: 1 }, { index: 2, beat: null }];
     const story = { keyframes, beats: [ACTED, STOOD], report: { keyframes: [figures({}), figures({ keyframe: 1 }), figures({ keyframe: 2, performed_as: "walk slowly" })] } };
-    expect([...marks(story as unknown as Story)]).toEqual([[1, "stands"], [2, "otherwise"]]);
+    expect([...marks(story as unknown as Story)]).toEqual([[1, { outcome: "stands", words: `“${STOOD.text}”` }], [2, { outcome: "otherwise", words: "done as “walk slowly”, which the body knows" }]]);
     expect(marks({ ...story, report: null } as unknown as Story).size).toBe(1);
   });
 

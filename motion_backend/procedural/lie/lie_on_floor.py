@@ -337,10 +337,11 @@ def _on_the_back(pose: Pose, mat: Mat, keys: LiePose) -> Pose:
 
 
 def _step(pose: Pose, index: int, seconds: tuple[float, float], end: Pose, mat: Mat) -> Pose:
-    """One foot taken from where it is to where it is at the end, in a stretch of the frames; lifted, then moved."""
+    """One foot taken from where it is at first to where it is at the end, in a stretch of the frames; lifted, then
+    moved."""
     first, last = (round(at * FPS) for at in seconds)
     share = np.clip((np.arange(len(pose)) - first) / (last - first), 0.0, 1.0)
-    here, there = pose.ankles[first, index].copy(), end.ankles[index]
+    here, there = pose.ankles[0, index].copy(), end.ankles[index]
     moved = smooth((share - STARTS) / (1 - 2 * STARTS))[:, None]
     lifted = smooth(share / TAKEOFF) * smooth((1 - share) / TAKEOFF)
     around = lifted[:, None] * (LIFT[index] * UP + ROUND[index] * mat.out) * mat.skeleton.scale
@@ -348,7 +349,7 @@ def _step(pose: Pose, index: int, seconds: tuple[float, float], end: Pose, mat: 
     ankles[:, index] = here + moved * (there - here) + around
     # Under the hip the sole looks back, whichever way the foot goes.
     turned = smooth(share / TURNED) if end.toes[index] > 0 else 1 - smooth((1 - share) / TURNED)
-    feet[:, index] = rotations.slerp(feet[first, index][None], end.feet[index][None], turned)
+    feet[:, index] = rotations.slerp(feet[0, index][None], end.feet[index][None], turned)
     planted[:, index] = np.where((share > 0) & (share < 1), 0.0, 1.0)
     return replace(pose, ankles=ankles, feet=feet, planted=planted)
 

@@ -10,7 +10,7 @@ from motion_backend import rotations
 from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.held_poses import Seat, bend, upright
 from motion_backend.procedural.pose import Pose
-from motion_backend.procedural.pose_solver import solve
+from motion_backend.procedural.pose_solver import folded_within, solve
 from motion_backend.procedural.sit.sit_keys import SitPose, Surface, Trunk
 from motion_backend.procedural.sit.sit_legs import Room, bends_a_leg, seated_legs
 from motion_backend.procedural.sit.sit_own import NOBODY
@@ -28,10 +28,12 @@ TO_TABLE = np.radians(np.arange(2.0, 48.0, 1.0))
 """Leans forward that are tried until the elbows of hands on a table are bent enough."""
 EASY_TABLE = 0.70
 """A table's edge is no farther from the pelvis for hands that do something on it (metres at 1.70 m)."""
-EASY_ELBOW = np.radians(112.0)
+EASY_ELBOW = np.radians(116.0)
 """How far an elbow is open at most whose hand is on a table."""
 HEAD_ON_ARMS = 0.13
 """The joint of a head that lies on arms, above the table these lie on (metres at 1.70 m)."""
+AS_GOOD = 0.02
+"""Elbows that are no farther off lie as well (metres at 1.70 m, of both)."""
 LEANS = np.radians(np.arange(8.0, 76.0, 1.0))
 """Leans of the trunk that are tried until the elbows lie."""
 BEHIND_PELVIS = 0.12
@@ -174,13 +176,13 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     )
     holds = holds_of(style, place, skeleton, keys)
     if _reaches_table(place, skeleton.scale) and BUSY_ON_TABLE & set(style.arms):
-        return _up_to_table(_leaning(pose, seat, -TO_TABLE, keys.trunk), style, holds, skeleton), holds
+        return _up_to_table(_leaning(pose, seat, -TO_TABLE, skeleton, keys.trunk), style, holds, skeleton), holds
     if style.on_elbows and style.arms == PILLOWS and place.around.table is not None:
-        return _head_on_arms(_leaning(pose, seat, -LEANS, keys.trunk), place, holds, skeleton), holds
+        return _head_on_arms(_leaning(pose, seat, -LEANS, skeleton, keys.trunk), place, holds, skeleton), holds
     if style.on_elbows:
-        return _on_elbows(_leaning(pose, seat, -LEANS, keys.trunk), place, holds, skeleton), holds
+        return _on_elbows(_leaning(pose, seat, -LEANS, skeleton, keys.trunk), place, holds, skeleton), holds
     back = np.array([_recline(style, place, keys.trunk)])
-    leaned = _leaning(pose, seat, back, keys.trunk).at(0)
+    leaned = _leaning(pose, seat, back, skeleton, keys.trunk).at(0)
     leaned = replace(leaned, spine=leaned.spine + bend(0.0, style.own.side, style.own.turn))
     return at_rest(leaned, holds, skeleton), holds
 
@@ -284,14 +286,15 @@ def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     return float(min(wanted, met + GIVES, most if borne else free))
 
 
-def _leaning(pose: Pose, seat: Seat, back: Array, trunk: Trunk) -> Pose:
+def _leaning(pose: Pose, seat: Seat, back: Array, skeleton: Skeleton, trunk: Trunk) -> Pose:
     """The same pose with its trunk leaned back by each of N angles (radians, forwards negative)."""
     many = pose.repeat(len(back))
     hips = upright(seat.yaw, -np.where(back > 0, trunk.hips_back_share, trunk.hips_forward_share) * back)
     spine_shares = np.where(back > 0, trunk.spine_back_share, trunk.spine_forward_share)
     spine = np.stack([bend(-share * lean) for share, lean in zip(spine_shares, back, strict=True)])
     head = many.head + np.stack([bend(trunk.head_ahead_share * max(lean, 0.0)) for lean in back])
-    return replace(many, hips=hips, spine=spine, head=head)
+    leaned = replace(many, hips=hips, spine=spine, head=head)
+    return folded_within(leaned, skeleton) if seat.is_low(skeleton.scale) else leaned
 
 
 def _up_to_table(leans: Pose, style: Seated, holds: Holds, skeleton: Skeleton) -> Pose:
@@ -332,7 +335,8 @@ def _on_elbows(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> P
             gap += np.abs(elbow[:, 1] - place.around.table_top - ELBOW * skeleton.scale)
         else:
             gap += np.abs(_from_bone(elbow, hip, knee) - ON_THIGH * skeleton.scale)
-    return at_rest(leans.at(int(np.argmin(gap))), holds, skeleton)
+    # The least lean that is as good as any: farther down arms are between knees and trunk.
+    return at_rest(leans.at(int(np.argmax(gap < gap.min() + AS_GOOD * skeleton.scale))), holds, skeleton)
 
 
 def _head_on_arms(leans: Pose, place: Place, holds: Holds, skeleton: Skeleton) -> Pose:

@@ -18,7 +18,7 @@ from motion_backend.procedural.pose import Pose, concatenate, interpolate, smoot
 from motion_backend.procedural.touch.gestures import wave_of
 from motion_backend.procedural.touch.hand_captions import Laid, with_arms
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.hand_placement import gripped
+from motion_backend.procedural.touch.hand_placement import Grip, gripped
 from motion_backend.procedural.touch.touch_keys import (
     HeldTouches,
     Stroke,
@@ -61,8 +61,8 @@ class Way:
     doing: str = ""
     looks: float = 1.0
     """How much of the time for looking at the thing it needs."""
-    turns: tuple[float, float] = (0.0, 0.0)
-    """How far a grip is turned to either side (radians)."""
+    grip: Callable[[Pose], Grip] | None = None
+    """How far the hand turns what it holds in such a pose, of who turns something."""
     step: Callable[[Pose, tuple[int, int, int]], Pose] = lambda whole, _lengths: whole
     """A foot that steps up to the thing and back, in frames of coming, doing and leaving."""
     speeds_up: float = 3.0
@@ -254,9 +254,11 @@ def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
     """A grip that is turned to and fro about what it holds; the elbow goes up and down with it, and the trunk along."""
     row = keys.rotate
     time, ease, held = _held(there, seconds, keys.ease_s)
-    wave = _wave(row.turn_hz, time)
-    angle = ease * np.where(wave > 0, way.turns[1], -way.turns[0]) * wave
-    held = gripped(held, way.hands[0], angle, way.laid.normal, row)
+    if way.grip is None:
+        return held
+    grip = way.grip(there)
+    angle = ease * grip.swung(_wave(row.turn_hz, time))
+    held = gripped(held, way.hands[0], angle, way.laid.normal, grip, row)
     left, _ = way.turned()
     along = angle / row.turn_rad
     still = np.zeros_like(along)
@@ -283,10 +285,13 @@ def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
             reach[:, index] += wave[:, None] * (
                 move.aside_m * left + move.ahead_m * ahead + move.off_m * way.laid.normal
             )
-            turn = rotations.axis_to_quat("x", -side * move.tilt_rad * wave)
-            palms[:, index] = rotations.compose(palms[:, index], turn)
+            tilt = rotations.axis_to_quat("x", -side * move.tilt_rad * wave)
+            bend = rotations.axis_to_quat("z", side * move.bend_rad * wave)
+            palms[:, index] = rotations.compose(palms[:, index], rotations.compose(tilt, bend))
     spine = held.spine + np.stack([0 * aside, row.spine_turn_rad / keys.wash.usual_m * aside, 0 * aside], axis=1)
-    return replace(held, reach=reach, palms=palms, spine=spine)
+    away = 1.0 if way.laid.hand == "right" else -1.0
+    ear = ease[:, None] * away * np.array([0.0, row.ear_turn_rad, row.ear_side_rad])
+    return replace(held, reach=reach, palms=palms, spine=spine, head=held.head + ear)
 
 
 _HELD: Final[dict[str, Callable[[Way, Pose, float, HeldTouches], Pose]]] = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Final
 
 import numpy as np
@@ -51,10 +52,12 @@ def is_top(normal: Array | tuple[float, float, float]) -> bool:
     return bool(normal[1] > TOP)
 
 
-def other_hand(obstacles: Obstacles, spot: Spot, laid: tuple[Array, str], scale: float) -> tuple[Array, Array] | None:
+def other_hand(
+    obstacles: Obstacles, spot: Spot, laid: tuple[Array, str], scale: float, is_free: Callable[[Array, Array], bool]
+) -> tuple[Array, Array] | None:
     """Wrist and palm of the other hand, beside the first on the same surface; None where that is too narrow.
 
-    `laid` is the first hand's wrist and its side.
+    `laid` is the first hand's wrist and its side; `is_free` says whether nothing stands where that palm would lie.
     """
     wrist, hand = laid
     normal = np.asarray(spot.normal, dtype=np.float64)
@@ -64,8 +67,9 @@ def other_hand(obstacles: Obstacles, spot: Spot, laid: tuple[Array, str], scale:
         beside = wrist + apart * along
         inside = float(obstacles.depth((beside - (HAND_REST + FINGER) * normal)[None])[0])
         over = float(obstacles.solid().depth((beside + ELBOW * normal)[None])[0])
-        if inside > 0 and over < -ELBOW:
-            return beside, palm_on(normal, spot.facing, other)
+        palm = palm_on(normal, spot.facing, other)
+        if inside > 0 and over < -ELBOW and is_free(beside, palm):
+            return beside, palm
     return None
 
 

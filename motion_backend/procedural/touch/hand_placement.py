@@ -7,10 +7,11 @@ with its fingers in the surface: ways to turn the hand, to tip its fingers and t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.body.joint_limits import out_of_cone
@@ -40,8 +41,13 @@ PALM: Final = np.array(
 1.70 m, the mannequin's)."""
 FOREARM: Final = np.array([[0.0, 0.042], [0.6, 0.034]])
 """Shares of a forearm from the elbow, and how thick it is there (metres at 1.70 m)."""
-TURNS, DEEPER = 31, 0.016
+TURNS, DEEPER = 21, 0.016
 """So many turns of a grip are tried, and how much deeper a palm may be in the surface then (metres)."""
+SWINGS: Final = np.linspace(-1.5, 1.5, 21)
+SWING_STEP: Final = 0.31
+"""Swings of the elbow that are tried with each, and how far one is from that of the turn before at most (radians)."""
+UNLIKE: Final = 0.12
+"""A hand that is farther from where it is to be does not follow (radians)."""
 DEEPEST, SOON = 0.02, 4
 """No palm is in a surface deeper than this (metres): so many frames before it would be a hand has come off it."""
 
@@ -66,15 +72,32 @@ def placed(bent: Pose, laid: Laid, elbows: Array, seen: Depth, skeleton: Skeleto
     return replace(found, elbows=poles)
 
 
-def gripped(held: Pose, index: int, angle: Array, normal: Array, row: Rotate) -> Pose:
+@dataclass(frozen=True)
+class Grip:
+    """How far a hand on a surface turns about what it holds, and where its elbow goes for it to get there."""
+
+    palm: Array
+    """(4,) hand to world before it is turned: as the wrist can, not as it was asked to."""
+    turns: Array
+    """(N,) rising, 0 among them (radians)."""
+    elbows: Array
+    """(N, 3) where the elbow points for each, in the chest's frame."""
+
+    def swung(self, wave: Array) -> Array:
+        """Turns (T,) for a wave of unit size, to the farther side first. (T,)."""
+        first, last = self.turns[[0, -1]]
+        return np.asarray((first + last) / 2 + (last - first) / 2 * (wave if last > -first else -wave))
+
+
+def gripped(held: Pose, index: int, angle: Array, normal: Array, grip: Grip, row: Rotate) -> Pose:
     """T frames of a hand (0 left, 1 right) on a surface, its grip turned by angles (T,) about what it holds, and the
     elbow with it."""
     turn, side = rotations.rotvec_to_quat(angle[:, None] * normal), (1.0, -1.0)[index]
     reach, palms, elbows = held.reach.copy(), held.palms.copy(), held.elbows.copy()
-    middle = rotations.rotate(palms[:, index], np.array([side * row.grip_m, 0.0, 0.0]))
+    middle = rotations.rotate(grip.palm, np.array([side * row.grip_m, 0.0, 0.0]))
     reach[:, index] += middle - rotations.rotate(turn, middle) + row.lift_per_rad * np.abs(angle)[:, None] * normal
-    palms[:, index] = rotations.compose(turn, palms[:, index])
-    elbows[:, index] += angle[:, None] * np.array([row.elbow_left_ratio, row.elbow_up_ratio * side, 0.0])
+    palms[:, index] = rotations.compose(turn, grip.palm)
+    elbows[:, index] = np.stack([np.interp(angle, grip.turns, axis) for axis in grip.elbows.T], axis=1)
     return replace(held, reach=reach, palms=palms, elbows=elbows)
 
 
@@ -92,19 +115,66 @@ def lifted_off(whole: Pose, laid: Laid, skeleton: Skeleton) -> Pose:
     return replace(whole, reach=reach)
 
 
-def turns_of_grip(there: Pose, laid: Laid, skeleton: Skeleton, row: Rotate) -> tuple[float, float]:
-    """How far a hand that lies in a single pose turns to either side with its palm on the surface (radians)."""
+def grip_of(there: Pose, laid: Laid, skeleton: Skeleton, row: Rotate) -> Grip:
+    """How far a hand that lies in a single pose turns to either side with its palm on the surface, its elbow swinging
+    as little as will do about the line from the shoulder."""
+    from scipy.ndimage import gaussian_filter1d
+
     index, wrist, _ = laid.hands[0]
+    one, side = there.repeat(1), (1.0, -1.0)[index]
+    frame = chest_frame(one, skeleton)
+    along = rotations.rotate(rotations.inverse(frame[0][0]), wrist - shoulders(one, skeleton)[0, index])
+    along = rotations.normalize(along)
+    poles = rotations.rotate(rotations.rotvec_to_quat((side * SWINGS)[:, None] * along), there.elbows[index])
+    _, hand, _ = _palm_skin(Arm.of(one, skeleton, index, frame), skeleton.scale)
     angles = np.linspace(-row.turn_rad, row.turn_rad, TURNS)
-    tried = gripped(there.repeat(TURNS), index, angles, laid.normal, row)
+    # Every turn with every swing of the elbow.
+    angle, pole = np.repeat(angles, len(SWINGS)), np.tile(poles, (TURNS, 1))
+    still = Grip(hand[0], angles, np.tile(there.elbows[index], (TURNS, 1)))
+    tried = gripped(there.repeat(len(angle)), index, angle, laid.normal, still, row)
+    elbows = tried.elbows.copy()
+    elbows[:, index] = pole
+    can = _follows(replace(tried, elbows=elbows), laid, skeleton).reshape(TURNS, len(SWINGS))
+    first, up = _swings(can[TURNS // 2 :: -1]), _swings(can[TURNS // 2 :])
+    swings = np.array([*first[:0:-1], *up])
+    turns = angles[TURNS // 2 + 1 - len(first) : TURNS // 2 + len(up)]
+    smooth = gaussian_filter1d(swings, 1.0, mode="nearest")
+    turned = rotations.rotvec_to_quat((side * smooth)[:, None] * along)
+    return Grip(hand[0], turns, rotations.rotate(turned, there.elbows[index]))
+
+
+def _follows(tried: Pose, laid: Laid, skeleton: Skeleton) -> NDArray[np.bool_]:
+    """Whether the hand gets to where it is turned, with its palm no deeper in the surface than it was at first, and no
+    strain in the shoulder. (N,)."""
+    index, wrist, _ = laid.hands[0]
     arm = Arm.of(tried, skeleton, index, chest_frame(tried, skeleton))
-    gap = ((_palm_skin(arm, skeleton.scale)[0] - wrist) @ laid.normal + HAND_REST).min(axis=1)
-    # As deep as it lies there, and hardly deeper.
-    lies = gap > gap[TURNS // 2] - DEEPER
-    first, last = np.argmin(lies[TURNS // 2 :: -1]), np.argmin(lies[TURNS // 2 :])
-    ends = [steps - 1 if steps else TURNS // 2 for steps in (first, last)]
-    step = row.turn_rad / (TURNS // 2)
-    return -step * float(ends[0]), step * float(ends[1])
+    skin, hand, _ = _palm_skin(arm, skeleton.scale)
+    gap = ((skin - wrist) @ laid.normal + HAND_REST).min(axis=1)
+    unlike = rotations.length(
+        rotations.quat_to_rotvec(rotations.compose(rotations.inverse(hand), tried.palms[:, index]))
+    )
+    upper, _ = arm_rotations(arm.limb, arm.side)
+    strain = out_of_cone(f"{arm.name}_shoulder", rotations.compose(rotations.inverse(arm.clavicle), upper))
+    return np.asarray((unlike[:, 0] < UNLIKE) & (gap > gap[len(gap) // 2] - DEEPER) & (strain < UNLIKE))
+
+
+def _swings(can: NDArray[np.bool_]) -> list[float]:
+    """From no turn on outwards, the swing of the elbow for each turn, as near to the last one as may be; as far as
+    there is one within reach. `can` is (turns, swings)."""
+    found = [0.0]
+    for row in can[1:]:
+        away = np.where(row, np.abs(SWINGS - found[-1]), np.inf)
+        if away.min() > SWING_STEP:
+            break
+        found.append(float(SWINGS[np.argmin(away)]))
+    return found
+
+
+def lies_free(wrist: Array, palm: Array, side: float, seen: Depth, scale: float) -> bool:
+    """Whether the palm (4,) of a hand laid flat with its wrist (3,) there is in nothing that stands on the surface; 1
+    is the left one, -1 the right."""
+    points = wrist + scale * rotations.rotate(palm[None], PALM * [side, 1.0, 1.0])
+    return bool(seen(points).max() <= 0.0)
 
 
 def _grid(laid: Laid, row: HandPlacement) -> tuple[Array, Array, Array]:

@@ -22,7 +22,7 @@ from motion_backend.procedural.sit.sit_transition import knees_over_feet
 from motion_backend.procedural.touch.hand_actions import Way, deed
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
-from motion_backend.procedural.touch.hand_placement import Depth, lifted_off, placed, turns_of_grip
+from motion_backend.procedural.touch.hand_placement import Depth, grip_of, lifted_off, placed
 from motion_backend.procedural.touch.kneel import down_on_knees, prone
 from motion_backend.procedural.touch.reach_keys import (
     Approach,
@@ -103,10 +103,10 @@ def touch(
         kneeling = (_folded(lead, above, laid, row),)
     step_s = row.folding_s if raised else row.kneeling_step_s
     times = manner.hold, tempo, pace, step_s, manner.doing, max(looks, 1 / FPS)
-    turns = turns_of_grip(reached, laid, skeleton, keys.held.rotate) if manner.doing == "rotate" else (0.0, 0.0)
+    grip = partial(grip_of, laid=laid, skeleton=skeleton, row=keys.held.rotate)
     step_in = partial(stepped, step=step, row=keys.reach.step)
     luck = float(rng.normal()) if manner.doing == "strike" else 0.0
-    way = Way(away, lead, kneeling, hand, laid, *times, turns, step_in, row.goes_along_power, luck)
+    way = Way(away, lead, kneeling, hand, laid, *times, grip, step_in, row.goes_along_power, luck)
     whole = lifted_off(deed(way, keys), laid, skeleton)
     knees = whole.knees if manner.prone else knees_over_feet(whole)
     whole = replace(whole, knees=knees)

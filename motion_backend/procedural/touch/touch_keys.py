@@ -220,9 +220,6 @@ class Rotate:
     """From the wrist to the middle of what it turns about."""
     lift_per_rad: float
     """How far the hand comes off what it lies on for every radian of the turn (metres)."""
-    elbow_left_ratio: float
-    """How the elbow's direction changes for every radian of the turn."""
-    elbow_up_ratio: float
     pelvis_m: float
     spine_turn_rad: float
     spine_side_rad: float
@@ -243,6 +240,8 @@ class HandMove:
     """Out from the surface."""
     tilt_rad: float = 0.0
     """About the way of the fingers, the thumb downwards."""
+    bend_rad: float = 0.0
+    """At the wrist, fingers up off the surface."""
     phase_share: float = 0.0
     taps: bool = False
     """Whether only its upper half is gone through."""
@@ -256,6 +255,10 @@ class Busy:
     moves: tuple[HandMove, ...]
     spine_turn_rad: float = 0.0
     """Of the trunk, for every stroke aside by `Wash.usual_m`."""
+    ear_turn_rad: float = 0.0
+    """How far the head is turned away from the hand, an ear to the thing."""
+    ear_side_rad: float = 0.0
+    """And bent down to it."""
 
 
 @table

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -15,6 +16,7 @@ from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import alive
 from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
 from motion_backend.procedural.touch.hand_contacts import free_stroke, other_hand, palm_on
+from motion_backend.procedural.touch.hand_placement import lies_free
 from motion_backend.procedural.touch.kneel import place_to_kneel
 from motion_backend.procedural.touch.reach import Manner, arriving, touch
 from motion_backend.procedural.touch.touch_keys import touch_keys
@@ -66,16 +68,16 @@ def reach(body: Body, part: Part) -> None:
     palm = palm_on(normal, spot.facing, action.hand)
     doing = handling_of(action.caption)
     both = with_both_hands(action.caption) or (steadies(action.caption) and not any(holding(body.pose)))
-    other = other_hand(obstacles, spot, (goal, action.hand), scale) if both else None
+    seen = body.scene.depth_about(spot.object_id)
+    is_free = partial(lies_free, side=-1.0 if action.hand == "left" else 1.0, seen=seen, scale=scale)
+    other = other_hand(obstacles, spot, (goal, action.hand), scale, is_free) if both else None
     if with_both_hands(action.caption) and other is None:
         body.note("no room for both hands: one hand")
     laid = Laid(goal, palm, normal, action.hand, other)
     laid = replace(laid, stroke=free_stroke(obstacles, spot, laid))
     hold = max(part.hold, MIN_HOLD)
     manner = Manner(bearing, hold, doing, prone, _free_feet(body))
-    touched = touch(
-        body.pose, laid, manner, body.skeleton, body.scene.depth_about(spot.object_id), touch_keys(), body.rng
-    )
+    touched = touch(body.pose, laid, manner, body.skeleton, seen, touch_keys(), body.rng)
     body.add(alive(touched, CALM * bearing.restless, body.rng, FPS))
 
 

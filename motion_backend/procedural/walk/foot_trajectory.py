@@ -26,7 +26,7 @@ HEEL_RISE, SETTLE = 0.47, 0.30
 """Phase from the first rise of the heel to the lift, and from heel strike to the flat foot."""
 SAMPLES = 600
 """Of a curve."""
-ROUNDED = 0.028
+ROUNDED = 0.036
 """Width of the bell that the corners of a curve are rounded by, in phases: a limb has no jumps of acceleration."""
 TIP_UP = np.radians(25)
 """How far the tip of a foot points up at the heel strike of a full step."""

@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from acted import SMALL, sat, walked
+from hypothesis import given
+from hypothesis import strategies as st
 from numba.core.registry import CPUDispatcher
 from PIL import Image
 
@@ -23,11 +25,12 @@ from motion_backend.rendering.film_cuts import LONGEST, SHORTEST, Framing, Subje
 from motion_backend.rendering.film_frames import compile_film, film_frames
 from motion_backend.rendering.film_loop import moment, write_loop
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
-from motion_backend.rendering.film_shots import FilmShot, film_shots
+from motion_backend.rendering.film_set import FilmSet
+from motion_backend.rendering.film_shots import FilmShot, _fitted, _View, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
 from motion_backend.rendering.rasterizer import Camera, orbit
-from motion_backend.rendering.renderer import STUDIO, Solid, Still, to_srgb_bytes
+from motion_backend.rendering.renderer import STUDIO, Solid, Still, nearest_of, to_srgb_bytes
 from motion_backend.skeleton import INDEX
 from planner_service.narration.told import Span, Told
 from planner_service.output.film_pages import DONE, subtitles
@@ -60,6 +63,22 @@ def test_the_body_is_in_the_picture_all_the_time():
         for frame in range(shot.start, shot.stop):
             x, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(joints[frame]), (160, 90)), -1, 0)
             assert ((x > 0) & (x < 160) & (y > 0) & (y < 90)).mean() > 0.9, (shot, frame)
+
+
+def test_of_two_sides_of_a_body_a_film_shows_the_one_with_the_home_and_the_body_stays_in_the_picture():
+    motion, joints = walked("walk").motion, walked("walk").motion.joint_positions().astype(np.float64)
+    whole = FilmSet.of(SMALL)
+    for one in film_shots(SMALL, motion, [0], 16 / 9):
+        middle = joints[one.start : one.stop].reshape(-1, 3)
+        target = (middle.min(axis=0) + middle.max(axis=0)) / 2
+        centred = replace(one.camera, target=(float(target[0]), one.camera.target[1], float(target[2])))
+        outside = [
+            float((~nearest_of(whole.seen(camera, joints[one.start : one.stop]), camera, SIZE)[1]).mean())
+            for camera in (one.camera, centred)
+        ]
+        assert outside[0] <= outside[1] + 0.03
+        seen = one.camera.project(one.camera.view(middle), SIZE)
+        assert ((seen[:, :2] > 0) & (seen[:, :2] < SIZE)).all()
 
 
 def test_nothing_hides_the_body_for_more_than_a_moment():
@@ -244,3 +263,19 @@ def test_a_loop_has_every_third_frame_of_its_moments_once_and_begins_anew(tmp_pa
     with Image.open(path) as picture:
         assert (picture.size, picture.info["loop"]) == (SIZE, 0)
         assert getattr(picture, "n_frames", 1) == 13
+
+
+@given(st.floats(-3.1, 3.1), st.floats(0.1, 2.5), st.floats(0.5, 2.0))
+def test_a_camera_turned_aside_stands_where_it_stood_and_keeps_all_in_its_picture(
+    yaw: float, wide: float, high: float
+) -> None:
+    points = np.array([[x, y, z] for x in (-wide, wide) for y in (0.0, high) for z in (-0.3, 0.3)])
+    middle = _fitted(yaw, 0.2, points, 16 / 9, 2.3)
+    for view in _View(0.0, middle, points).aside(16 / 9):
+        assert view.camera.eye == middle.eye
+        assert view.score < 0.0
+        seen = view.camera.project(view.camera.view(points), (160, 90))
+        assert ((seen[:, :2] > 0) & (seen[:, :2] < (160, 90))).all()
+    sides = [float(view.camera.axes[2] @ middle.axes[0]) for view in _View(0.0, middle, points).aside(16 / 9)]
+    assert len(sides) == 2 or wide > 0.8, "a narrow body has room at either side"
+    assert len(sides) < 2 or sides[0] * sides[1] < 0

@@ -159,3 +159,36 @@ def test_what_is_outside_of_a_home_is_no_picture() -> None:
     half = upright((-9.0, -9.0), (0.0, 9.0), -4.0)
     nothing, some, full = (seen.look(scene, camera).appeal for scene in ([], [half], [WALL]))
     assert nothing + 0.5 < some < full - 0.5
+
+
+def test_ground_that_fills_a_picture_is_as_much_outside_as_nothing_and_hides_as_a_floor_does() -> None:
+    seen = Appearances.of(with_knees_drawn_up(0.0), Framing(0, 1), 16 / 9)
+    camera = orbit((0.0, 0.9, 0.0), 4.0, 0.0, 0.1)
+    ground = replace(WALL, outside=True)
+    nothing, outside, inside = (
+        seen.look([wall], camera).appeal for wall in (upright((90.0, 0.0), (91.0, 1.0), 1.0), ground, WALL)
+    )
+    assert outside == pytest.approx(nothing)
+    assert inside > outside + 2.0
+    before = replace(upright((-9.0, 0.0), (9.0, 9.0), 1.0), outside=True)
+    assert seen.look([before], camera).shown == 0.0
+
+
+def test_what_is_held_counts_by_its_worst_second_too() -> None:
+    motion = with_knees_drawn_up(0.0)
+    long = replace(
+        motion,
+        root_positions=np.repeat(motion.root_positions, 90, axis=0),
+        local_rotations=np.repeat(motion.local_rotations, 90, axis=0),
+        contacts=np.repeat(motion.contacts, 90, axis=0),
+        actions=np.repeat(motion.actions, 90),
+    )
+    seen = Appearances.of(long, Framing(0, 90), 16 / 9)
+    free, hidden = np.array([[0.9, 1.2, 0.2]]), np.array([[0.9, 1.2, -3.0]])
+    looks = len(seen.vertices)
+    # As many looks with it hidden, in a row or one here and one there.
+    row = tuple(hidden if at < looks // 2 else free for at in range(looks))
+    spread = tuple(hidden if at % 2 else free for at in range(looks))
+    camera = orbit((0.0, 0.9, 0.0), 4.0, 0.0, 0.1)
+    appeals = [replace(seen, held=held).look([WALL], camera).appeal for held in ((free,) * looks, spread, row)]
+    assert appeals[0] > appeals[1] > appeals[2]

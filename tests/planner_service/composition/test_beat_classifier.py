@@ -66,8 +66,8 @@ def test_clauses_are_read_alike_alone_and_among_others(encoder: MiniLM) -> None:
 def test_it_knows_beats_that_it_has_not_learned(encoder: MiniLM) -> None:
     from planner_service.evaluation.beat_recognition import recognised
 
-    found = recognised(shipped(encoder), training_themes()[1][::12])
-    assert found.beats > 80
+    found = recognised(shipped(encoder), training_themes()[1][::24])
+    assert found.beats > 40
     assert found.first > 0.7
     assert found.shown > 0.8
     assert found.placed > 0.6

@@ -93,7 +93,7 @@ def test_who_skips_a_meal_does_not_eat(meal: str) -> None:
 
 def test_a_thing_is_where_it_is_told_to_lie() -> None:
     script = planned("The letter lies on the coffee table. She opens it.")
-    assert shown(script, "opens it").furniture == "coffee table"
+    assert [one.furniture for one in script.keyframes] == ["coffee table", "floor"], "gone to, then opened there"
 
 
 def shown(script: LongScript, text: str) -> PlannedKeyframe:

@@ -12,7 +12,8 @@ import pytest
 from motion_backend.motion import Skill
 from planner_service.api.stories.schemas import HomeShown
 from planner_service.grounding.furnish import FurnishError, called, furnish
-from planner_service.grounding.object_assignment import usable_offers
+from planner_service.grounding.object_assignment import place_in, usable_offers
+from planner_service.grounding.seat_access import draw_up
 from planner_service.jobs import serialization
 from planner_service.scripts.script import Beat, LongScript, PlannedKeyframe
 from scene_graphs.affordances.room_validation import validate
@@ -190,6 +191,21 @@ def test_a_script_on_the_floor_alone_still_gets_a_room() -> None:
     found = furnish(script(("loco", "floor", "study")), index())
     assert len(found.home.rooms) == 1
     assert found.places[0].object_id is None
+
+
+def test_no_chair_is_drawn_up_to_where_the_door_to_another_room_leaves_no_way() -> None:
+    rooms = {layout.id: layout for layout in built_in_layouts()}
+    home = home_from_layouts([rooms["bedroom-0065"], rooms["dining-room-0094"]], seed=0)
+    seats = [name for name, use in usable_offers(home).items() if "sit" in use and "dining_chair" in name]
+    keyframe = PlannedKeyframe(
+        skill=Skill.SITDOWN,
+        emotion="neutral",
+        caption="eating at the table, right hand to the mouth",
+        furniture="dining chair",
+    )
+    for name in seats:
+        drawn, _ = draw_up(home, [keyframe], [place_in(name)])
+        assert "sit" in usable_offers(drawn)[name], name
 
 
 def test_what_joined_rooms_cut_off_is_left_aside() -> None:

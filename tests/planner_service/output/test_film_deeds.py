@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import accumulate, pairwise
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -48,6 +49,20 @@ def test_the_way_to_a_deed_that_the_same_words_tell_is_no_deed_and_one_told_by_i
     segments = [(0, 90), (90, 150)]
     assert deeds(told_of((0, 1)), motion, segments, Role()) == [90, 90]
     assert deeds(told_of((0,), (1,)), motion, segments, Role()) == [0, 90]
+
+
+@pytest.mark.parametrize(("stands", "begins"), [(90, 120), (30, 0)])
+def test_who_goes_somewhere_and_stands_there_for_a_while_does_it_standing(stands: int, begins: int) -> None:
+    motion = with_phases((PhaseKind.WALK, 120), (PhaseKind.STAND, stands))
+    role = Role(captions={0: (Skill.LOCO, "wave with the right hand")})
+    assert deeds(told_of((0,)), motion, [(0, 120 + stands)], role) == [begins]
+
+
+def test_who_goes_about_with_something_in_hand_does_it_from_where_they_took_it() -> None:
+    motion = with_phases((PhaseKind.WALK, 120), (PhaseKind.STAND, 90))
+    said = (Skill.LOCO, "walk while talking on the phone with the right hand")
+    (begins,) = deeds(told_of((0,)), motion, [(0, 210)], Role(captions={0: said}))
+    assert begins < 60
 
 
 def test_nobody_is_asleep_who_is_not_yet_down() -> None:

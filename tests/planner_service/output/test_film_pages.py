@@ -38,6 +38,19 @@ def test_words_go_when_what_they_tell_is_over_as_soon_as_they_could_be_read() ->
     assert short.stop / FPS == pytest.approx(QUICK * asked, abs=0.1), "it is read quickly, and he is gone"
 
 
+def test_what_is_told_first_and_done_last_is_shown_when_it_is_done() -> None:
+    text = "Before he watered the plant, Idris opened the curtains and stretched."
+    spans = spans_of(text, "Before he watered the plant", "opened the curtains", "stretched")
+    last, *rest = spans
+    told = Told(
+        "", text, (replace(last, keyframes=(2,)), *(replace(one, keyframes=(k,)) for k, one in enumerate(rest)))
+    )
+    shown = subtitles(told, [(0, 200), (200, 400), (400, 600)], FPS)
+    assert ["opened" in shown[0].text, "Before" in shown[-1].text] == [True, True]
+    assert shown[0].start < 200
+    assert shown[-1].stop > 400
+
+
 def test_a_film_is_of_the_home_the_motion_and_the_words_of_its_story() -> None:
     story = Pipeline().make(StoryRequest("A person sits down on the sofa."))
     filmed = Filmed.of(story)
@@ -130,3 +143,12 @@ def test_words_that_are_not_seen_are_slanted_and_whole_subtitles_of_them_left_ou
     assert slanted.startswith("waited nervously at the window")
     assert shown[-1].text.endswith("She slept.")
     assert all(any(not slants for row in line.lines for _, slants in row) for line in shown)
+
+
+def test_words_of_what_something_stands_for_are_shown_slanted_and_those_of_nothing_left_out() -> None:
+    text = "He unlocked the door. Drop keys. Nobody came. He slept."
+    spans = spans_of(text, "He unlocked the door.", "Drop keys.", "He slept.")
+    unseen = [text.index(words) for words in ("Drop keys.", "Nobody came.")]
+    told = Told("", text, spans, (Span(unseen[0], unseen[1] + len("Nobody came."), ()),))
+    shown = subtitles(told, [(0, 200), (200, 400), (400, 600)], FPS)
+    assert any(line.text.startswith("Drop keys.") and line.slanted for line in shown)

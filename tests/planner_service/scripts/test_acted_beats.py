@@ -96,10 +96,10 @@ def test_a_beat_whose_deeds_the_body_did_not_reach_is_not_acted_and_says_so() ->
     assert acted_beats([Beat(text="walks to the window")], [walk]).acted == 1
 
 
-def test_what_the_body_did_otherwise_only_stands_for_its_beat() -> None:
+def test_what_the_body_did_otherwise_only_stands_for_its_beat_and_says_why() -> None:
     other = ("nothing to lean back against: upright",)
     found = acted_beats([READS], [shot(0, True, otherwise=other)])
-    assert (found.acted, found.stood_for, found.outcomes[0].why) == (0, 1, IN_ITS_PLACE)
+    assert (found.acted, found.stood_for, found.outcomes[0].why) == (0, 1, f"{IN_ITS_PLACE}, {other[0]}")
     for more in (shot(0, True), shot(0, True, otherwise=())):
         found = acted_beats([READS], [shot(0, True, connects=True, otherwise=other), more])
         assert (found.acted, found.stood_for) == (1, 0)
@@ -164,7 +164,7 @@ def test_one_keyframe_may_serve_several_beats() -> None:
 def test_the_words_name_what_is_missing_and_apart_from_it_what_is_left_undone() -> None:
     found = acted_beats([SITS, READS, NO_SUPPER], [shot(0, seconds=3.0), shot(None, seconds=1.0)])
     assert found.lines() == [
-        "1 of 2 beats of your theme are acted; 75% of the screen time shows them",
+        "1 of 2 beats of your theme are acted; 25% of the screen time plays something else",
         "not acted: reads (no keyframe is left that shows it)",
         "left undone, as asked: eats no supper",
         *(ACTED, NOT_SHOWN, LEFT_UNDONE),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.themes.opening_words import goes_to_window, opening_of, spelt_out
+from planner_service.themes.opening_words import goes_out, goes_to_window, opening_of, spelt_out
 
 
 @for_each(
@@ -37,3 +37,21 @@ def test_it_is_the_last_that_can_be_opened(said: str, before: tuple[str, ...], o
 )
 def test_a_way_may_lead_to_a_window(said: str, goes: bool) -> None:
     assert goes_to_window(said) == goes
+
+
+@for_each(
+    ("said", "goes"),
+    [
+        ("runs out of the door without breakfast", True),
+        ("leaves", True),
+        ("leaves for work", True),
+        ("walks out into the rain", True),
+        ("leaves a note", False),
+        ("leaves the room", False),
+        ("storms out of the kitchen", False),
+        ("takes the bin out", False),
+    ],
+)
+def test_who_leaves_the_home_goes_to_its_door(said: str, goes: bool) -> None:
+    assert goes_out(said) == goes
+    assert (opening_of(Skill.LOCO, said) == "door") == goes

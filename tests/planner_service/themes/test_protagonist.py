@@ -60,6 +60,14 @@ from planner_service.themes.sentence_parser import clauses_of_text
         ("Our Anna moved out; Papa sits in her room and looks at her photographs.", "Papa", "he"),
         ("Carla's dog died; she sits on the sofa and weeps.", "Carla", "she"),
         ("John phones Mary; Mary paces up and down and hangs up.", "Mary", "she"),
+        # who does something with somebody else
+        ("Marta and her husband argue. She shouts at him.", "Marta", "she"),
+        ("Tom and Anna dance in the hall. Then they laugh.", "Tom", "he"),
+        ("Grandma Rose knits and dozes off.", "Grandma Rose", "she"),
+        ("Her mother calls. She lets it ring.", "Sam", "she"),
+        ("Her husband Tom is late. She paces up and down.", "Sam", "she"),
+        ("Oskar burps the baby on his shoulder until she sleeps.", "Oskar", "he"),
+        ("The resident reads. He yawns.", "the resident", "he"),
     ],
 )
 def test_the_theme_names_its_person(theme: str, name: str, pronouns: str) -> None:
@@ -129,6 +137,9 @@ def test_a_visitor_is_not_the_hero_where_somebody_with_a_name_does_as_much(theme
         ("Nobody calls. He goes to bed.", ["Nobody calls"]),
         ("Ola and Ben come home. They sit down.", []),
         ("A tired student comes home. They sit down.", []),
+        ("Nadia and her brother Karim dance. Karim sulks and leaves; Nadia laughs.", ["Nadia laughs"]),
+        ("The couple quarrel: Joanna shouts and cries, Ben shrugs.", ["Ben shrugs"]),
+        ("Dad plays with me, and we laugh.", []),
     ],
 )
 def test_what_several_others_or_nobody_do_is_not_the_heros(theme: str, theirs: list[str]) -> None:

@@ -13,10 +13,15 @@ from motion_backend.body.self_collision import self_penetration
 from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.joint_speed import MOST, fastest_joint
 from motion_backend.motion import FPS, PhaseKind
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_keys import lie_keys
+from motion_backend.procedural.lie.lie_on_floor import Mat, kneel_down
 from motion_backend.procedural.lie.lie_own import CHARACTER, NOBODY
+from motion_backend.procedural.lie.lie_pose import Bed
 from motion_backend.procedural.own_way import drawn_way
-from motion_backend.skeleton import HAND_REST, LYING_REST
+from motion_backend.skeleton import HAND_REST, LYING_REST, build_skeleton
+from scene_graphs.affordances.affordances import floor_spot
 
 BACK = ("hands on belly", "lying down, legs straight", "lying on the back, arms spread wide", "lying still")
 SIDE = {"side-lie on left, legs bent": 1, "curled up on the left side, knees drawn up": 1, "side-lie on right": -1}
@@ -210,3 +215,15 @@ def test_feet_are_lifted_off_the_floor_before_they_swing_onto_what_is_lain_on(wh
     assert support_slip(got_up(where, "lying still").kinematics) < 4.0, (
         "and are over where they will stand before they come down"
     )
+
+
+def test_who_kneels_down_leaves_each_foot_where_it_stands_until_it_steps() -> None:
+    mat = Mat(Bed.of(floor_spot("lie", (3.0, 2.6), 0.7)), build_skeleton())
+    start = standing(mat.standing_point, 0.7, Bearing(), mat.skeleton)
+    down = kneel_down(start, mat, Bearing(), lie_keys().floor_down)
+    for foot in (0, 1):
+        steps = int(np.argmin(down.planted[:, foot]))
+        away = np.linalg.norm(down.ankles[:, foot] - start.ankles[foot], axis=1)
+        assert away[:steps].max() < 0.005, foot
+        assert away[-1] > 0.3, foot
+        assert np.linalg.norm(np.diff(down.ankles[:, foot], axis=0), axis=1).max() < 0.08, foot

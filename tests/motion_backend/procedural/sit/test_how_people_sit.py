@@ -223,3 +223,13 @@ def test_hands_never_go_through_thighs_trunk_or_head() -> None:
         deep = self_penetration(body.motion.skeleton, kinematics.positions, kinematics.world)
         assert deep.max() < 0.05, body.action
         assert (deep > 0.02).mean() < 0.25, body.action
+
+
+def test_who_sits_on_the_floor_holds_the_trunk_as_the_words_say() -> None:
+    def lean(caption: str) -> float:
+        body = sat("floor", caption)
+        return float(np.median(body.lean(body.facing)[-2 * FPS :]))
+
+    assert abs(lean("sit upright with hands on thighs")) < 3
+    assert lean("supporting head with hands, head bowed") > 30
+    assert lean("bending to the feet, both hands at the ankles") > 20

@@ -107,6 +107,24 @@ def test_a_turning_hand_turns_far_with_its_elbow_while_the_other_keeps_still() -
     assert np.ptp(other[20:-20], axis=0).max() < 0.03
 
 
+def test_a_front_is_turned_as_far_as_a_top_with_the_wrist_near_its_place() -> None:
+    wardrobe = Placed("wardrobe", "wardrobe", (2.5, 0.0, 0.3), (1.5, 2.1, 0.6), 0.0)
+    motion = act(home_from_layouts([replace(ROOM, objects=(wardrobe,))], 0), "wardrobe", "rotate with the right hand")
+    joints = motion.joint_positions().astype(np.float64)
+    gap = np.linalg.norm(joints[:, WRIST] - np.array(motion.goals[0].position), axis=1)
+    hand = turned(motion, "right_wrist")[gap < 0.10]
+    assert np.degrees(np.arccos(np.clip(hand @ hand[0], -1, 1)).max()) > 25
+    assert gap[gap < 0.10].mean() < 0.03
+
+
+def test_knuckles_knock_from_the_wrist() -> None:
+    motion, _, gap = done("knocking with the right hand")
+    there = gap < 0.12
+    _, world = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
+    fingers = rotations.rotate(world[there, WRIST], np.array([-1.0, 0.0, 0.0]))
+    assert np.ptp(np.degrees(np.arcsin(fingers[:, 1]))) > 20
+
+
 def test_what_is_put_down_comes_from_above_with_the_forearm_up() -> None:
     motion, joints, gap = done("put down with the right hand")
     first = int(np.argmax(gap < 0.02))
