@@ -266,9 +266,9 @@ class DeedReader:
             if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or _sounds(one) or is_state(one.clause):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
-            told = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text
+            words = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text
             return (
-                replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": "", "text": told}))
+                replace(one, beat=one.beat.model_copy(update={"kind": "deed", "who": "", "text": words}))
                 if ours
                 else one
             )

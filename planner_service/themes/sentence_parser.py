@@ -80,7 +80,8 @@ _MEANWHILE: Final = re.compile(
 )
 """When it is, between a joint and what is done then: "drinks coffee, and | at dawn | falls asleep"."""
 _AGO: Final = re.compile(r"\b(?:years?|months?|weeks?|days?|decades|ages|long) ago\b", re.IGNORECASE)
-"""What was done then is not done now."""
+_NOW: Final = re.compile(r"\b(?:now|nowadays|today|tonight)\b", re.IGNORECASE)
+"""What was done so long ago is remembered where this is told after it."""
 _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
 
@@ -143,7 +144,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
         doer = ""
         for piece in (pieces := pieces_of(sentence)):
             parts = _clause(piece, quotes, number)
-            if sentences[1:] and _AGO.search(piece.text):  # it is told beside what is done now
+            if _AGO.search(piece.text) and any(map(_NOW.search, sentences[number + 1 :])):
                 parts = [replace(part, perfect=bool(part.verb)) for part in parts]
             parts = _sharing(_main(told[-1]), parts) if told else parts
             own = _main(parts).subject

@@ -389,6 +389,7 @@ def retold(theme: str, voice: Voice = SHE) -> str:
         ("Ana knits until her eyes close.", "Ana knit until her eyes closed."),
         ("One sings, the other washes up.", "One sang, the other washed up."),
         ("Socks impossible. Ana sits down.", "Socks impossible. Ana sat down."),
+        ("I hoover and wait.", "Ana hoovered and waited."),
     ],
 )
 def test_a_theme_is_told_in_its_own_words_in_the_past(theme: str, told: str) -> None:

@@ -72,6 +72,19 @@ def test_what_nobody_does_is_told_and_is_no_deed(theme: str, told: list[str]) ->
     assert [one.text for one in beats_of(theme) if not one.beat.asked] == told
 
 
+def test_what_was_done_long_ago_is_remembered_where_it_is_told_what_is_done_now() -> None:
+    assert kinds("Ten years ago they danced here. Now he sits and reads.") == ["memory", "deed", "deed"]
+    assert kinds("Ten years ago they danced here. They laughed.")[0] == "deed"
+
+
+@for_each(
+    ("text", "wanted"),
+    [("Fridge empty.", "other"), ("Socks impossible.", "other"), ("Shoes off.", "deed"), ("Door locked.", "other")],
+)
+def test_how_a_thing_is_is_nobodys_deed(text: str, wanted: str) -> None:
+    assert kinds(f"{text} She reads.") == [wanted, "deed"]
+
+
 def test_a_nap_is_a_deed_though_no_verb_says_so() -> None:
     assert [one.clause.verb for one in beats_of("He folds shirts. Then a short nap.")] == ["fold", "nap"]
 
