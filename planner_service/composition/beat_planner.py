@@ -16,6 +16,7 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.gainsaid import is_gainsaid
+from planner_service.composition.held_things import with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
@@ -65,6 +66,7 @@ def serve_beats(
         )
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
+    acted = with_things(read, acted)
     return LongScript(
         theme=theme,
         beats=_with_reasons(read, writer, acted),

@@ -82,7 +82,7 @@ def _words(text: str) -> list[str]:
 
 def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     """What hands do it to, and with what, of things that are kept somewhere: a hand that is laid there has none of
-    them, and what is carried is a box."""
+    them but what its keyframe names, and what is carried is else a box."""
     done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor] or list(keyframes)
     bare = bool(done) and all(_BARE.search(one.caption) for one in done)
     if clause.verb in theme_words()["sought_verbs"] or clause.quotes:
@@ -91,7 +91,8 @@ def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     held = [held_in(one.skill, one.caption) for one in done]
     seen = {lemma_of(word) for one in done for word in _words(one.caption)}
     seen |= {grip.prop for one in held if one is not None for grip in one.props}
-    told = [one for one in told if bare or lemma_of(_words(one["what"])[-1]) not in seen]
+    named = {lemma_of(word) for one in keyframes for word in _words(one.held)}
+    told = [one for one in told if lemma_of(_words(one["what"])[-1]) not in (named if bare else named | seen)]
     found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]
     return found[:1]
 
