@@ -86,10 +86,10 @@ class PropTrack:
         return self.start + len(self.positions)
 
     @property
-    def taken(self) -> tuple[int, ...]:
-        """The frames in which it comes into the hands."""
+    def held(self) -> tuple[tuple[int, int], ...]:
+        """First and stop frame of every stretch in which it is in the hands."""
         held = np.ones(len(self.positions), dtype=bool) if self.lying is None else ~self.lying
-        return tuple(self.start + start for start, _ in runs_of(held))
+        return tuple((self.start + start, self.start + stop) for start, stop in runs_of(held))
 
     def is_held(self, frame: int) -> bool:
         """Whether it is in the hands at a frame."""

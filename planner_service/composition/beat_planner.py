@@ -22,6 +22,7 @@ from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, pla
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.composition.rest_place import BY_A_WALL
 from planner_service.composition.unshown import unseen
+from planner_service.composition.whereabouts import is_held
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
@@ -162,6 +163,8 @@ def _besides(
         return details_of(read.clause) if known else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
+    if is_held(read.clause) and any(one.held for one in own):
+        return unseen(read.clause, own)
     walks = deed is not None and deed.skill is Skill.LOCO
     own = [one for one in own if walks or not connects(one)] or own
     if deed is not None and not writer.reader.is_shown(read.clause, deed, own, index in writer.linked):

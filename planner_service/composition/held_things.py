@@ -14,7 +14,10 @@ from typing import Final
 from motion_backend.motion import RISINGS, Emotion, Skill
 from motion_backend.props import held_in, shown_as
 from planner_service.composition.deed_lexicon import pieces_in
+from planner_service.composition.whereabouts import is_held
 from planner_service.scripts.acted_beats import connects
+from planner_service.scripts.caption_fallbacks import usual
+from planner_service.scripts.captions import captions
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import grammar, lemma_of
@@ -42,6 +45,8 @@ _BUSY: Final = re.compile(
 """Captions in which the hands are needed, or nothing stays in them."""
 _HANDS_IT: Final = re.compile(r"^(?:An act of|touch|pick up|put down|wash|Low touch)\b")
 """Captions of a hand at a thing."""
+_STOWED: Final = re.compile(r"\b(?:hands behind back|hands in pockets)\b")
+"""Walks that may as well be plain ones, where something is in the hands."""
 _LONGEST: Final = 4
 """Keyframes for which what was taken stays in the hands, where nothing more is told of it."""
 
@@ -77,13 +82,27 @@ class _Hands:
         eaten = "eating" in keyframe.caption
         self.kept |= {number} if (takes or row) and not (lays or eaten) else set()
 
+    def hold(self, beat: int, clause: Clause, near: Sequence[int]) -> None:
+        """Put what is only told to be held into the hands in what is done meanwhile: "reads, holding a candle"."""
+        thing = thing_in(clause, None)
+        there = [
+            number for number, one in enumerate(self.keyframes)
+            if one.beat in near and one.skill not in RISINGS and number not in self.named
+        ]  # fmt: skip
+        if not thing or not there or not all(_may_hold(self.keyframes[number], thing, True) for number in there):
+            return
+        self.named |= dict.fromkeys(there, thing)
+        last = self.keyframes[there[-1]]
+        self.keyframes[there[-1]] = last.model_copy(update={"also": (*last.also, beat)})
+
     def carried(self) -> list[PlannedKeyframe]:
         """The keyframes with what is in the hands in each."""
         held = dict(self.named)
         for number, thing in self.named.items():
             held |= dict.fromkeys(self._led(number, thing) if number in self.laid else (), thing)
             held |= dict.fromkeys(self._following(number, thing) if self._goes_on(number) else (), thing)
-        return [self._with(number, keyframe, held.get(number, "")) for number, keyframe in enumerate(self.keyframes)]
+        found = [self._with(number, keyframe, held.get(number, "")) for number, keyframe in enumerate(self.keyframes)]
+        return [_by_right(number, found) for number in range(len(found))]
 
     def _goes_on(self, number: int) -> bool:
         """Whether a thing is in the hands after a keyframe: it was taken there, or before, and is not put down."""
@@ -112,8 +131,18 @@ class _Hands:
         walks = keyframe.skill is Skill.LOCO and number not in self.named and keyframe.mood is Emotion.NEUTRAL
         shape = shown_as(thing) if thing else None
         large = shape is not None and shape.way == "rim" and _LARGE in (shape.shape, *shape.instead)
-        update = {"held": thing} | ({"caption": CARRIED} if walks and large else {})
+        plain = {"caption": usual(Skill.LOCO, keyframe.mood)} if _STOWED.search(keyframe.caption) else {}
+        update = {"held": thing} | plain | ({"caption": CARRIED} if walks and large else {})
         return keyframe.model_copy(update=update) if thing else keyframe
+
+
+def _by_right(number: int, keyframes: Sequence[PlannedKeyframe]) -> PlannedKeyframe:
+    """A reach for what is in the hands before or after is made with the right hand, which drinks and carries."""
+    one = keyframes[number]
+    beside = [other.held for other in (*keyframes[max(number - 1, 0) : number], *keyframes[number + 1 : number + 2])]
+    caption = one.caption.replace("left hand", "right hand")
+    passed = one.skill is Skill.TOUCH and bool(one.held) and one.held in beside
+    return one.model_copy(update={"caption": caption}) if passed and caption in captions()[one.skill.value] else one
 
 
 def with_things(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) -> tuple[PlannedKeyframe, ...]:
@@ -133,7 +162,14 @@ def with_things(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) 
             if not walks_only:
                 hands.name(number, read[beat].clause)
                 told.add(beat)
+    for beat, one in enumerate(read):
+        if is_held(one.clause) and not any(beat in (keyframe.beat, *keyframe.also) for keyframe in keyframes):
+            hands.hold(beat, one.clause, [near for near in (beat + 1, beat - 1) if _same_sentence(read, beat, near)])
     return tuple(hands.carried())
+
+
+def _same_sentence(read: Sequence[ReadBeat], beat: int, near: int) -> bool:
+    return 0 <= near < len(read) and read[near].clause.sentence == read[beat].clause.sentence
 
 
 def _is_done_later(number: int, beat: int, keyframes: Sequence[PlannedKeyframe]) -> bool:
@@ -156,7 +192,7 @@ def _may_hold(keyframe: PlannedKeyframe, thing: str, takes: bool) -> bool:
 
 def _are_free(keyframe: PlannedKeyframe, thing: str, reaching: bool) -> bool:
     """Whether a thing may stay in the hands in a keyframe; while `reaching`, one hand may be at something else."""
-    if keyframe.skill in RISINGS or keyframe.caption == CARRIED:
+    if keyframe.skill in RISINGS or keyframe.caption == CARRIED or _STOWED.search(keyframe.caption):
         return True
     shape = shown_as(thing)
     hangs = shape is not None and shape.way == "hanging"

@@ -71,9 +71,18 @@ def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
 def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, ...]:
     """The same of the keyframes that show it, with things that no hand is seen with, places where the body is not, and
     how often it does what it does once."""
-    besides = unshown(clause, {one.piece[0] for one in keyframes})
+    named = _held_words(keyframes)
+    besides = [
+        text for text in unshown(clause, {one.piece[0] for one in keyframes})
+        if not text.startswith("with ") or named.isdisjoint(map(lemma_of, _words(text)))
+    ]  # fmt: skip
     more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes))
     return (*besides, *(text for text in more if not any(text in one for one in besides)))
+
+
+def _held_words(keyframes: Sequence[PlannedKeyframe]) -> frozenset[str]:
+    """What keyframes name to be in the hands."""
+    return frozenset(lemma_of(word) for one in keyframes for word in _words(one.held))
 
 
 def _words(text: str) -> list[str]:
@@ -91,7 +100,7 @@ def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     held = [held_in(one.skill, one.caption) for one in done]
     seen = {lemma_of(word) for one in done for word in _words(one.caption)}
     seen |= {grip.prop for one in held if one is not None for grip in one.props}
-    named = {lemma_of(word) for one in keyframes for word in _words(one.held)}
+    named = _held_words(keyframes)
     told = [one for one in told if lemma_of(_words(one["what"])[-1]) not in (named if bare else named | seen)]
     found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]
     return found[:1]
