@@ -209,13 +209,20 @@ def _track(
     positions, turns, sizes = _held_by(hands, holders[own[0]], start, stop)
     for begin in begins[1:]:
         first = max(begin - half, 0)
-        place, turn, size = _held_by(hands, holders[own[begin]], start + first, stop)
-        share = np.clip((np.arange(len(place)) + 1) / (2 * half), 0.0, 1.0)
+        later = _held_by(hands, holders[own[begin]], start + first, stop)
+        last = min(first + 2 * half, stop - start)
+        share = np.arange(1, last - first + 1) / (2 * half)
         share = share * share * (3 - 2 * share)
-        before = positions[first:]
-        positions = np.concatenate([positions[:first], before + share[:, None] * (place - before)])
-        turns = np.concatenate([turns[:first], rotations.slerp(turns[first:], turn, share)])
-        sizes = np.concatenate([sizes[:first], sizes[first:] + share * (size - sizes[first:])])
+        soft = slice(first, last)
+        mixed = (
+            positions[soft] + share[:, None] * (later[0][: last - first] - positions[soft]),
+            rotations.slerp(turns[soft], later[1][: last - first], share),
+            sizes[soft] + share * (later[2][: last - first] - sizes[soft]),
+        )
+        positions, turns, sizes = (
+            np.concatenate([before[:first], between, after[last - first :]])
+            for before, between, after in zip((positions, turns, sizes), mixed, later, strict=True)
+        )
     lying = np.array([isinstance(holders[label], Lying) for label in own])
     sizes = sizes * growth(start, stop, len(labels), hands.fps)
     return PropTrack(prop, start, positions, rotations.continuous(rotations.normalize(turns)), sizes, lying)
