@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from motion_backend.motion import RISINGS, Emotion, Skill
-from motion_backend.props import held_in, shown_as
+from motion_backend.props import held_in, shown_as, things_named
 from planner_service.composition.deed_lexicon import pieces_in
 from planner_service.composition.whereabouts import is_held
 from planner_service.scripts.acted_beats import connects
@@ -239,7 +239,7 @@ def _last_thing(words: Sequence[str]) -> str:
     """The thing that a phrase is of, by its last noun: of "the wine glass" that, of "the coffee table" none."""
     for place in range(len(words) - 1, -1, -1):
         word, before = words[place], words[place - 1] if place else ""
-        thing = lemma_of(word)
+        thing = word if word in things_named() else lemma_of(word)
         if word == "glasses":
             thing = "glasses" if before in _OWN else "glass"
         pair = f"{before} {thing}"
