@@ -94,7 +94,7 @@ class _Places:
                     self._turn(row[0], self._in_hand(moment.grip.hand))
             elif moment.skill is Skill.TOUCH:
                 self._reach(moment, goes_on)
-            elif not self._is_held():
+            elif not self._is_held() and moment.held is None:  # a shut book is not there for an open one
                 self._turn(moment.start, self._in_hand("right"))
         if self._is_held():
             self._turn(min(last, frames), NOWHERE)

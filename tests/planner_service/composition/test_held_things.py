@@ -5,7 +5,7 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.composition.held_things import CARRIED, thing_in, with_things
+from planner_service.composition.held_things import CARRIED, things_in, with_things
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import beats_of
 from planner_service.themes.sentence_parser import clauses_of_text
@@ -55,7 +55,14 @@ def held(theme: str, *keyframes: PlannedKeyframe) -> list[str]:
     ],
 )
 def test_the_thing_is_what_the_deed_is_done_to(text: str, thing: str) -> None:
-    assert thing_in(clauses_of_text(text)[0], None) == thing
+    assert things_in(clauses_of_text(text)[0])[:1] == [thing] * bool(thing)
+
+
+def test_where_things_are_taken_at_several_places_each_is_named_where_it_is() -> None:
+    assert held("She grabs her keys and her bag.", at("table", 0), to("wardrobe", 0), at("wardrobe", 0))[::2] == [
+        "key",
+        "bag",
+    ]
 
 
 def test_what_is_taken_is_carried_to_where_it_is_used() -> None:
