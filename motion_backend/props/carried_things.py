@@ -91,6 +91,7 @@ class _Places:
             if row is not None and moment.grip is not None and moment.grip.prop == self.shape.shape:
                 last = max(last, row[1]) if not goes_on else last
                 if not self._is_held():
+                    self._leave_far(moment.grip.hand, row[0])
                     self._turn(row[0], self._in_hand(moment.grip.hand))
             elif moment.skill is Skill.TOUCH:
                 self._reach(moment, goes_on)
@@ -119,8 +120,7 @@ class _Places:
         if takes:
             if self._holder() is None:
                 self._turn(self._since(), there)
-            elif self._is_far(named.hand, ends):
-                self._turn(max(ends - 1, 0), NOWHERE)
+            self._leave_far(named.hand, ends)
             self._turn(ends, self._in_hand(named.hand))
         elif puts:
             if not held:
@@ -169,11 +169,12 @@ class _Places:
     def _is_held(self) -> bool:
         return isinstance(self._holder(), Grip)
 
-    def _is_far(self, hand: str, frame: int) -> bool:
-        """Whether it lies where the hand is not."""
+    def _leave_far(self, hand: str, frame: int) -> None:
+        """What lies where the hand that has it next is not is seen no more: it is another one."""
         holder = self._holder()
         palm = self.hands.palms[min(frame, len(self.hands.palms) - 1), 0 if hand == "left" else 1]
-        return isinstance(holder, Lying) and float(np.linalg.norm(holder.position - palm)) > NEAR
+        if isinstance(holder, Lying) and float(np.linalg.norm(holder.position - palm)) > NEAR:
+            self._turn(frame - 1, NOWHERE)
 
     def _in_hand(self, hand: str) -> int:
         """In one hand, hanging or lifted."""

@@ -39,7 +39,8 @@ _FILLED: Final = frozenset(("glass", "drink", "cup"))
 _OWN: Final = frozenset(("his", "her", "their", "my", "reading"))
 _BUSY: Final = re.compile(
     r"\b(?:arms?|fists?|clap\w*|wav\w+|danc\w+|throw\w*|kneel\w*|jump\w*|shrug\w*|cheer\w*|stretch\w*|cry\w*|laugh\w*"
-    r"|behind|head|face|chin|mouth|toes|ankles|wrist|belly|chest|hips|pockets|palms|both hands|phone|piano|prone"
+    r"|behind|(?:holding|supporting|under) (?:the )?head|face|chin|mouth|toes|ankles|wrist|belly|chest|hips|pockets"
+    r"|palms|both hands|phone|piano|prone"
     r"|squat\w*|spin|point\w*|scratch\w*|pray\w*|shouting|punch\w*|kick\w*|skip|run)\b",
     re.IGNORECASE,
 )
@@ -103,7 +104,8 @@ class _Hands:
         held = dict(self.named)
         for number, thing in self.named.items():
             held |= dict.fromkeys(self._led(number, thing) if number in self.laid else (), thing)
-            held |= dict.fromkeys(self._following(number, thing) if self._goes_on(number) else (), thing)
+            stays = self._goes_on(number) or self._is_used_next(number)
+            held |= dict.fromkeys(self._following(number, thing) if stays else (), thing)
         return [
             one.model_copy(update={"held": held[number]}) if number in held else one
             for number, one in enumerate(self.keyframes)
@@ -114,6 +116,12 @@ class _Hands:
         before = [one for one in self.named if one <= number and self.named[one] == self.named[number]]
         states = [one in self.kept for one in before if one in self.kept | self.laid]
         return bool(states) and states[-1]
+
+    def _is_used_next(self, number: int) -> bool:
+        """Whether what a hand is at is in the hands when it is named next: who "cuts an apple and eats it"."""
+        later = next((one for one in sorted(self.named) if one > number), number)
+        same = later > number and self.named[later] == self.named[number] and number not in self.laid
+        return same and self.keyframes[number].skill is Skill.TOUCH is not self.keyframes[later].skill
 
     def _following(self, number: int, thing: str) -> Sequence[int]:
         """The keyframes after one in which a thing stays in the hands."""
