@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import json
+from dataclasses import asdict, replace
 from functools import cache
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from for_each import for_each
 
 from motion_backend import rotations
-from motion_backend.body.cast import InHand, Role, acted_captions, named_things
+from motion_backend.body.cast import InHand, Role, acted_captions, named_things, thing_from_dict
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Motion, Skill
 from motion_backend.props import PropTrack, held_in, prop_shape, prop_tracks, shown_as
@@ -211,3 +212,9 @@ def test_hands_that_hold_something_else_hold_nothing_that_was_carried() -> None:
     found = prop_tracks(motion, Role(captions=said, things={0: InHand("beer")}))
     assert [track.prop for track in found] == ["bottle", "box"]
     assert found[0].stop <= found[1].start
+
+
+def test_things_in_the_hands_come_back_from_what_a_service_keeps_of_them() -> None:
+    done = acted(Skill.TOUCH, TAKES)
+    for thing in named(done, {0: "red cup", 1: "letter"}).things.values():
+        assert thing_from_dict(json.loads(json.dumps(asdict(thing)))) == thing
