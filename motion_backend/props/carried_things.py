@@ -8,7 +8,7 @@ ends it by putting it down, unless its caption says which; a reach that is a str
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -64,7 +64,8 @@ def carried_things(
         for busy, frames in others:
             labels[(labels == number) & frames & bool({*_hands_of(holder)} & {*busy})] = NOWHERE
     for start, stop in runs_of(labels != NOWHERE):
-        yield _track(hands, shape.shape, places.holders, labels, (start, stop))
+        track = _track(hands, shape.shape, places.holders, labels, (start, stop))
+        yield replace(track, taken=tuple(sorted(frame for frame in places.taken if start <= frame < stop)))
 
 
 @dataclass
@@ -77,6 +78,8 @@ class _Places:
     holders: list[Grip | Lying] = field(default_factory=list)
     _turns: list[tuple[int, int]] = field(default_factory=list)
     """Frames from which on another holder has it."""
+    taken: set[int] = field(default_factory=set)
+    """Those in which it is taken, or lifted as a caption has it."""
 
     def follow(self, moments: Sequence[Moment]) -> NDArray[np.int64]:
         """The holder of all frames, by its place in `holders`; NOWHERE where the thing is not seen. (T,)."""
@@ -90,6 +93,7 @@ class _Places:
             last = moment.stop
             if row is not None and moment.grip is not None and moment.grip.prop == self.shape.shape:
                 last = max(last, row[1]) if not goes_on else last
+                self.taken.add(row[0])
                 if not self._is_held():
                     self._leave_far(moment.grip.hand, row[0])
                     self._turn(row[0], self._in_hand(moment.grip.hand))
@@ -120,6 +124,7 @@ class _Places:
         if takes:
             if self._holder() is None:
                 self._turn(self._since(), there)
+            self.taken.add(ends)
             self._leave_far(named.hand, ends)
             self._turn(ends, self._in_hand(named.hand))
         elif puts:

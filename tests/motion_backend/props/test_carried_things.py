@@ -136,6 +136,7 @@ def test_what_is_picked_up_lies_there_until_a_hand_comes_and_is_in_the_hand_from
     assert (track.start, track.stop) == (0, len(motion))
     ((taken, end),) = track.held
     assert end == len(motion)
+    assert track.lifts == (taken,)
     assert np.ptp(track.positions[: taken - 10], axis=0).max() == 0.0
     for frame in range(taken + 10, len(motion), 5):
         away = np.linalg.norm(corners(track, frame) - palm(motion, frame), axis=1).min()
@@ -200,6 +201,7 @@ def test_a_drink_that_is_carried_to_where_it_is_drunk_is_one_thing_all_the_way()
     for frame in range(0, len(motion), 7):
         assert np.linalg.norm(corners(track, frame) - palm(motion, frame), axis=1).min() < IN_HAND
     (mug,) = prop_tracks(motion, Role(captions=said))
+    assert track.lifts == mug.lifts == (mug.start,)
     inside = slice(mug.start + 12, mug.stop - 12)
     np.testing.assert_allclose(track.positions[inside], mug.positions[12:-12], atol=1e-9)
 
