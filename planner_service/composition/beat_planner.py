@@ -72,7 +72,7 @@ def serve_beats(
         theme=theme,
         beats=_with_reasons(read, writer, acted),
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
-        keyframes=as_hands_hold(acted),
+        keyframes=acted if planned else as_hands_hold(acted),
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
         method=request.method,
