@@ -213,7 +213,7 @@ class Action:
     keyframe: int = 0
     """Index of the keyframe it serves."""
     holds: str | None = None
-    """What is in the hands during it, in words ("cup, book"); no backend draws it."""
+    """What is in the hands during it, or is reached for, in words ("cup, book"); only seen, no backend knows it."""
     interaction: str | None = None
     """What is done in the pose, in words ("watch TV"): LINGO's interaction steps."""
     already: bool = False

@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any, Final, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
-from motion_backend.body.cast import Look, Role, acted_captions
+from motion_backend.body.cast import Look, Role, acted_captions, named_things
 from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
@@ -333,7 +333,7 @@ def role_of(character: Character, actions: Sequence[Action], script: LongScript)
         for action in actions
         if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
     )
-    return Role(Look.of(character), emotions, asleep, acted_captions(actions))
+    return Role(Look.of(character), emotions, asleep, acted_captions(actions), named_things(actions))
 
 
 def _told_of(action: Action, script: LongScript) -> str:

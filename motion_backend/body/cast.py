@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from typing import Final, Literal, get_args
+from typing import Any, Final, Literal, get_args
 
 import numpy as np
 
@@ -24,6 +24,8 @@ Top = Literal["tee", "shirt", "tunic"]
 Over = Literal["", "cardigan", "coat"]
 Bottom = Literal["trousers", "shorts", "skirt"]
 Extra = Literal["collar", "tie", "belt", "hood", "bib", "apron", "neckline", "placket", "badge"]
+UPWARD: Final = 0.9
+"""Surfaces whose normal points up so far bear what is laid on them."""
 GIVEN: Final = ("member", "age", "build", "skin", "hair", "hair_color", "outfit")
 """Fields of a character that say how it looks; each may be left empty."""
 
@@ -210,6 +212,22 @@ def _bounded(ratio: float) -> float:
 
 
 @dataclass(frozen=True)
+class InHand:
+    """A thing that is in the hands in a keyframe, and where a hand meets it."""
+
+    thing: str
+    """As it is called: "letter"."""
+    hand: Literal["left", "right"] = "right"
+    """That reaches for it."""
+    at: tuple[float, float, float] | None = None
+    """The point of a surface that is reached for, in the world; None where nothing is."""
+    on_top: bool = False
+    """Whether things can lie there; else they come out of what is reached for, and go into it."""
+    facing: float = 0.0
+    """Yaw of whoever reaches."""
+
+
+@dataclass(frozen=True)
 class Role:
     """Somebody seen acting: the look, what the face is to show, and what is in the hands."""
 
@@ -220,11 +238,34 @@ class Role:
     """Keyframes with closed eyes."""
     captions: Mapping[int, tuple[Skill, str]] = field(default_factory=dict)
     """What is acted, by keyframe: the hands are empty where it is not named."""
+    things: Mapping[int, InHand] = field(default_factory=dict)
+    """What is named to be in the hands, by keyframe; where it is not, captions say."""
 
 
 def acted_captions(actions: Sequence[Action]) -> dict[int, tuple[Skill, str]]:
     """What actions have a role do, by keyframe."""
     return {action.keyframe: (action.skill, action.caption) for action in actions}
+
+
+def thing_from_dict(row: Mapping[str, Any]) -> InHand:
+    """The inverse of `asdict`, once lists have come back for tuples."""
+    at = tuple(row["at"]) if row["at"] is not None else None
+    return InHand(row["thing"], row["hand"], at, row["on_top"], row["facing"])
+
+
+def named_things(actions: Sequence[Action]) -> dict[int, InHand]:
+    """What actions name that a role has in the hands, by keyframe; of several things the last."""
+    return {
+        action.keyframe: InHand(
+            action.holds.rpartition(", ")[2],
+            "left" if action.hand == "left" else "right",
+            action.spot.point if action.spot is not None and action.skill is Skill.TOUCH else None,
+            action.spot is not None and action.spot.normal[1] > UPWARD,
+            action.spot.facing if action.spot is not None else 0.0,
+        )
+        for action in actions
+        if action.holds
+    }
 
 
 PLAIN: Final = Role()

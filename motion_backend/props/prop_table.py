@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from functools import cache
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache, lru_cache
 from typing import Literal
 
 from motion_backend.motion import Skill
@@ -59,6 +61,37 @@ class Grip:
 
 
 @table
+class Way:
+    """How one hand holds a thing where no caption says: as `Grip` has it."""
+
+    along: Direction
+    front: Direction
+    offset_m: Vector = (0.0, 0.0, 0.0)
+    beside: bool = False
+    """Whether its back is at the palm, not its origin."""
+    flat: bool = False
+    """Whether it lies on its back where it is put down; else it stands."""
+
+
+@table
+class Called:
+    """What one shape is called, and how it is held."""
+
+    shape: str
+    way: str
+    words: str
+    """Nouns in the singular, a hyphen in those of two words."""
+    instead: tuple[str, ...] = ()
+    """Props of captions that it is held in the place of."""
+    offset_m: Vector | None = None
+    """From the palm, in its own frame; None: its way's."""
+
+    def is_held_for(self, grip: Grip) -> bool:
+        """Whether it is what a grip of a caption holds, or is held in the place of that."""
+        return grip.prop in (self.shape, *self.instead)
+
+
+@table
 class Held:
     """What is in the hands for captions with these words."""
 
@@ -68,6 +101,8 @@ class Held:
     skills: tuple[Skill, ...] = (Skill.LOCO, Skill.SITDOWN, Skill.LIEDOWN, Skill.TOUCH)
     unless: str = ""
     """A caption that fits this too is left to other rows."""
+    anything: bool = False
+    """Whether its prop is for want of a name: a thing that is named, and is not held so, is in one hand instead."""
 
     def is_of(self, skill: Skill, caption: str) -> bool:
         """Whether a caption says so."""
@@ -87,12 +122,19 @@ class Props:
     """data/props.toml."""
 
     shapes: dict[str, tuple[PropPart, ...]]
+    ways: dict[str, Way]
+    called: tuple[Called, ...]
     held: tuple[Held, ...]
 
     def __post_init__(self) -> None:
         require_unlike("held.words", [f"{row.words} {row.skills}" for row in self.held])
         require_known("held.props", [grip.prop for row in self.held for grip in row.props], self.shapes)
-        require_known("shapes", self.shapes, {grip.prop for row in self.held for grip in row.props})
+        held = {grip.prop for row in self.held for grip in row.props}
+        require_unlike("called", [f"{row.shape} {word}" for row in self.called for word in row.words.split()])
+        require_known("called.shape", [row.shape for row in self.called], self.shapes)
+        require_known("called.way", [row.way for row in self.called], self.ways)
+        require_known("called.instead", [prop for row in self.called for prop in row.instead], held)
+        require_known("shapes", self.shapes, held | {row.shape for row in self.called})
 
 
 @cache
@@ -102,7 +144,37 @@ def prop_table() -> Props:
     return read
 
 
-def held_in(skill: Skill, caption: str) -> Held | None:
-    """What a caption has in the hands, by the first row that knows its words; None for nothing."""
+@lru_cache(maxsize=512)
+def held_in(skill: Skill, caption: str, thing: str = "") -> Held | None:
+    """What a caption has in the hands, by the first row that knows its words, with what a thing is called by in the
+    place of its own prop where that may be; None for nothing."""
     look = caption.rpartition(";")[2]  # before it stands what is done; see planner_service/scripts/caption_actions.py
-    return next((row for row in prop_table().held if row.is_of(skill, look)), None)
+    row = next((row for row in prop_table().held if row.is_of(skill, look)), None)
+    if row is None or not (named := shown_as(thing, row)) or any(grip.prop == named.shape for grip in row.props):
+        return row
+    # Of two props that it might be, it is the first.
+    place = next((number for number, grip in enumerate(row.props) if named.is_held_for(grip)), None)
+    if place is None:
+        return None if row.anything else row
+    props = [replace(grip, prop=named.shape) if number == place else grip for number, grip in enumerate(row.props)]
+    return replace(row, props=tuple(props))
+
+
+@cache
+def things_named() -> Mapping[str, tuple[Called, ...]]:
+    """The rows that call something by each noun."""
+    found: dict[str, tuple[Called, ...]] = {}
+    for row in prop_table().called:
+        for word in row.words.split():
+            found[word] = (*found.get(word, ()), row)
+    return found
+
+
+def shown_as(thing: str, *captions: Held | None) -> Called | None:
+    """How a thing of that name is seen: as what most captions hold for it, of several shapes that it is called; None
+    of what has no shape. A thing is called by its last word, or its last two: "red cups", "watering can"."""
+    words, known = thing.lower().split()[-2:], things_named()
+    called = ("-".join(words), "".join(words[-1:]), "".join(words[-1:]).removesuffix("s"))
+    rows = next((known[word] for word in called if word in known), ())
+    holding = [grip for row in captions if row is not None for grip in row.props]
+    return max(rows, key=lambda row: sum(map(row.is_held_for, holding)), default=None)

@@ -17,11 +17,13 @@ from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.earlier_deeds import with_its_noun
 from planner_service.composition.gainsaid import is_gainsaid
+from planner_service.composition.held_things import as_hands_hold, is_handled, with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.composition.rest_place import BY_A_WALL
 from planner_service.composition.unshown import unseen
+from planner_service.composition.whereabouts import is_held
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
@@ -66,11 +68,12 @@ def serve_beats(
         )
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
+    acted = with_things(read, acted)
     return LongScript(
         theme=theme,
         beats=_with_reasons(read, writer, acted),
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
-        keyframes=acted,
+        keyframes=acted if planned else as_hands_hold(acted),
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
         method=request.method,
@@ -161,9 +164,12 @@ def _besides(
         return details_of(read.clause) if known else (read.text,)
     deed = writer.deeds.get(index)
     own = [one for one in keyframes if index in (one.beat, *one.also)]
+    if is_held(read.clause) and any(one.held for one in own):
+        return unseen(read.clause, own)
     walks = deed is not None and deed.skill is Skill.LOCO
     own = [one for one in own if walks or not connects(one)] or own
-    if deed is not None and not writer.reader.is_shown(read.clause, deed, own, index in writer.linked):
+    handled = is_handled(read.clause, own)
+    if deed is not None and not (handled or writer.reader.is_shown(read.clause, deed, own, index in writer.linked)):
         return (read.text,)
     if read.beat.kind != "deed":
         return ()

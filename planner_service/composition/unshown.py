@@ -50,6 +50,11 @@ _OBJECT: Final = re.compile(
     re.IGNORECASE,
 )
 """What a deed is done to, or with."""
+_WITH: Final = re.compile(
+    r"with (?:[\w'-]+ ){0,3}?(?P<what>[\w'-]+)(?: in (?:his|her|their|one|the|both) (?:\w+ )?(?:hands?|arms))?$",
+    re.IGNORECASE,
+)
+"""What somebody has in the hands meanwhile, and where else it is told to be is not seen."""
 _BARE: Final = re.compile(r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying)\b")
 """Captions in which nothing is in the hands; but a box."""
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
@@ -71,9 +76,18 @@ def unshown(clause: Clause, used: Collection[str]) -> tuple[str, ...]:
 def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, ...]:
     """The same of the keyframes that show it, with things that no hand is seen with, places where the body is not, and
     how often it does what it does once."""
-    besides = unshown(clause, {one.piece[0] for one in keyframes})
+    named = _held_words(keyframes)
+    told = unshown(clause, {one.piece[0] for one in keyframes})
+    besides = [
+        text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
+    ]
     more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes))
     return (*besides, *(text for text in more if not any(text in one for one in besides)))
+
+
+def _held_words(keyframes: Sequence[PlannedKeyframe]) -> frozenset[str]:
+    """What keyframes name to be in the hands."""
+    return frozenset(lemma_of(word) for one in keyframes for word in _words(one.held))
 
 
 def _words(text: str) -> list[str]:
@@ -82,7 +96,7 @@ def _words(text: str) -> list[str]:
 
 def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     """What hands do it to, and with what, of things that are kept somewhere: a hand that is laid there has none of
-    them, and what is carried is a box."""
+    them but what its keyframe names, and what is carried is else a box."""
     done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor] or list(keyframes)
     bare = bool(done) and all(_BARE.search(one.caption) for one in done)
     if clause.verb in theme_words()["sought_verbs"] or clause.quotes:
@@ -91,7 +105,8 @@ def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     held = [held_in(one.skill, one.caption) for one in done]
     seen = {lemma_of(word) for one in done for word in _words(one.caption)}
     seen |= {grip.prop for one in held if one is not None for grip in one.props}
-    told = [one for one in told if bare or lemma_of(_words(one["what"])[-1]) not in seen]
+    named = _held_words(keyframes)
+    told = [one for one in told if lemma_of(_words(one["what"])[-1]) not in (named if bare else named | seen)]
     found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]
     return found[:1]
 

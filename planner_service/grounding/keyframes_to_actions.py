@@ -182,12 +182,12 @@ def act(
     drafts[:1] = [replace(one, begins=entered) for one in drafts[:1] if not one.already] or drafts[:1]
     begins = entered[:2] if entered is not None else scene.beginning(seed)[0]
     hands = Hands()
-    return tuple(
-        lingering(
-            hands.follow(action, done_in(keyframes[action.keyframe].caption)), said[action.keyframe] if said else ""
-        )
-        for action in stage.walks(drafts, places, begins, aimed)
-    )
+    acted = [
+        hands.follow(one, done_in(keyframes[one.keyframe].caption))
+        for one in stage.walks(drafts, places, begins, aimed)
+    ]
+    named = [replace(one, holds=keyframes[one.keyframe].held or one.holds) for one in acted]
+    return tuple(lingering(one, said[one.keyframe] if said else "") for one in named)
 
 
 class _Stage:

@@ -54,6 +54,12 @@ class EditedKeyframe(Keyframe):
     )
 
 
+def _held(one: EditedKeyframe, old: PlannedKeyframe | None) -> str:
+    """What is in the hands as somebody wants it: where they do not say, as it was while the same is done."""
+    stays = old is not None and (old.skill, old.caption) == (one.skill, one.caption)
+    return one.held if "held" in one.model_fields_set or old is None or not stays else old.held
+
+
 @dataclass(frozen=True)
 class Fault:
     """What is wrong with one field of a keyframe, and what would be right."""
@@ -168,7 +174,7 @@ class _Reader:
         chosen = self._object(number, one, old)
         same = old is not None and chosen == old.object_id
         if old is not None and same and (old.skill, old.emotion, old.caption) == (one.skill, one.emotion, one.caption):
-            return old
+            return old.model_copy(update={"held": _held(one, old)})
         return PlannedKeyframe(
             skill=one.skill,
             emotion=one.emotion,
@@ -179,6 +185,7 @@ class _Reader:
             room=self._room(chosen, old),
             object_id=chosen,
             already=old.already if old else False,
+            held=_held(one, old),
         )
 
     def _note(self, number: int, field: str, said: str) -> None:

@@ -124,6 +124,7 @@ def _keyframes(script: LongScript) -> list[Json]:
             "mood": keyframe.mood.value,
             "caption": keyframe.caption,
             "furniture": keyframe.furniture,
+            "held": keyframe.held,
             "object_id": None,
             "room": keyframe.room,
             "already": keyframe.already,

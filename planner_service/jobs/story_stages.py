@@ -289,11 +289,12 @@ class Maker:
         rows = [serialization.action_to_dict(action) for action in actions]
         summary = {"count": len(actions), "objects": [a.object_id for a in actions]}
         summary["captions"] = [action.caption for action in actions]
-        asleep = role_of(story.request.acted_by, actions, stage.script).asleep
+        role = role_of(story.request.acted_by, actions, stage.script)
         director = self._director(story.request.backend) if origin else None
         taken = reused_segments(story, origin, rows, director) if director else []
         own = [_own(one, index, len(actions)) for index, one in enumerate(taken)]
-        summary |= {"asleep": sorted(asleep), "reused": len(own)}
+        summary |= {"asleep": sorted(role.asleep), "reused": len(own)}
+        summary["things"] = [asdict(thing) | {"keyframe": index} for index, thing in role.things.items()]
         if origin:
             summary["take"] = take_number(story.store.engine, story.id)
         return _to_bytes({"actions": rows}), summary, own

@@ -126,8 +126,9 @@ def _panel(
 def _with_held(stage: _Stage, shot: Shot, start: int, stop: int, skill: Skill) -> Shot:
     """A shot moved to where what is held in these frames is seen: of who is on the way or at something the nearest
     frame, of who rests the one in which it is nearest to the head, without ghosts that would lie over it."""
-    said = stage.role.captions.get(int(stage.motion.actions[start]))
-    held = None if said is None else held_in(*said)
+    number = int(stage.motion.actions[start])
+    said, named = stage.role.captions.get(number), stage.role.things.get(number)
+    held = None if said is None else held_in(*said, named.thing if named is not None else "")
     own_props = {grip.prop for grip in held.props} if held else set()
     seen = np.zeros(stop - start, dtype=bool)
     away = np.full(stop - start, np.inf)
@@ -153,7 +154,7 @@ def _with_held(stage: _Stage, shot: Shot, start: int, stop: int, skill: Skill) -
 
 def _held(stage: _Stage, frame: int) -> NDArray[np.floating]:
     """Where what is in the hands is at a frame. (N, 3)."""
-    return np.array([one.positions[frame - one.start] for one in stage.acting.props if one.start <= frame < one.stop])
+    return np.array([one.positions[frame - one.start] for one in stage.acting.props if one.is_held(frame)])
 
 
 def _window(stage: _Stage, start: int, stop: int, shot: Shot) -> tuple[float, float, float, float]:

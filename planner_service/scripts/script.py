@@ -21,6 +21,7 @@ Source = Literal["authored", "video", "text", "imitation"]
 MAX_PIECES = 24
 """Pieces of furniture in one short script: one a keyframe."""
 MAX_VERSIONS = 1_000_000
+MAX_THING_LENGTH: Final = 40
 Word = Annotated[str, Field(min_length=1, max_length=60)]
 Instance = Annotated[int, Field(ge=1, le=99, strict=True)]
 Place = Annotated[int, Field(ge=0, lt=MAX_PIECES, strict=True)]
@@ -69,6 +70,8 @@ class Keyframe(_ScriptPart):
     caption: Line = Field(min_length=1, max_length=200)
     furniture: Line = Field("floor", validation_alias=AliasChoices("furniture", "furnitures"), max_length=60)
     """A furniture word, with an instance number when a script uses two of a kind ("wardrobe 2"), or "floor"."""
+    held: Line = Field("", max_length=MAX_THING_LENGTH, exclude_if=lambda thing: not thing)
+    """What is in the hands, or is reached for, by its name: "letter"; empty where only the caption says."""
 
     @property
     def mood(self) -> Emotion:

@@ -236,6 +236,7 @@ class KeyframeShown(BaseModel):
     mood: Emotion = Field(description="What that means: how it is told and acted.")
     caption: str
     furniture: str
+    held: str = Field("", description="What is named to be in the hands, or reached for; empty: the caption says.")
     object_id: str | None = Field(description='"room_index/object_id" in the home.')
     room: str | None = Field(description="Where the body is; before a home is found, what is asked for.")
     start: int | None = Field(description="First frame.")
