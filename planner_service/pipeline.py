@@ -23,6 +23,7 @@ from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Requ
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import Kept, act
 from planner_service.grounding.room_assignment import usual_furniture
+from planner_service.grounding.worked_pieces import worked_pieces
 from planner_service.library.library import Shelves
 from planner_service.llm.budget import Spent
 from planner_service.llm.client import for_story, spent_on
@@ -225,7 +226,7 @@ class Story:
     @property
     def role(self) -> Role:
         """Who is seen, what the face shows, and what the hands hold."""
-        return role_of(self.planned.character, self.actions, self.planned.script)
+        return role_of(self.planned.character, self.actions, self.planned.script, self.planned.home)
 
 
 @dataclass
@@ -325,15 +326,18 @@ def actor(request: StoryRequest, script: LongScript) -> Character:
     return cast_for(request.theme, called, request.seed, person.age)
 
 
-def role_of(character: Character, actions: Sequence[Action], script: LongScript) -> Role:
-    """Who is seen acting the actions of a script: the look, what face and hands show in each keyframe."""
+def role_of(character: Character, actions: Sequence[Action], script: LongScript, home: Home | None = None) -> Role:
+    """Who is seen acting the actions of a script: the look, what face and hands show in each keyframe, and what of a
+    home hands open, shut and switch.
+    """
     emotions = {action.keyframe: action.emotion for action in actions}
     asleep = frozenset(
         action.keyframe
         for action in actions
         if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
     )
-    return Role(Look.of(character), emotions, asleep, acted_captions(actions), named_things(actions))
+    worked = worked_pieces(actions, script.keyframes, home) if home is not None else {}
+    return Role(Look.of(character), emotions, asleep, acted_captions(actions), named_things(actions), worked)
 
 
 def _told_of(action: Action, script: LongScript) -> str:

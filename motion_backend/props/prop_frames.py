@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from motion_backend.body.cast import InHand, Role
 from motion_backend.motion import Motion, Skill
+from motion_backend.props.prop_shapes import PropShape, prop_shape
 from motion_backend.props.prop_table import Called, Grip, Held, held_in, shown_as
 from motion_backend.rotations import Array
 
@@ -79,6 +81,13 @@ class PropTrack:
     """(N,) shares of its size, 0 to 1 at 1.70 m."""
     lying: Flags | None = None
     """(N,) where it lies somewhere, and nobody holds it; None: nowhere."""
+    own: PropShape | None = None
+    """What it looks like, where that is no row of the table."""
+
+    @property
+    def shape(self) -> PropShape:
+        """What it looks like."""
+        return self.own or prop_shape(self.prop)
 
     @property
     def stop(self) -> int:
@@ -95,6 +104,12 @@ class PropTrack:
         """Whether it is in the hands at a frame."""
         now = frame - self.start
         return 0 <= now < len(self.positions) and not (self.lying is not None and bool(self.lying[now]))
+
+
+def spans_of(motion: Motion) -> Iterator[tuple[int, int]]:
+    """First frame and stop frame of every keyframe."""
+    starts = np.flatnonzero(np.diff(motion.actions, prepend=motion.actions[:1] - 1)).tolist()
+    return zip(starts, [*starts[1:], len(motion)], strict=True)
 
 
 def runs_of(flags: Flags) -> list[tuple[int, int]]:

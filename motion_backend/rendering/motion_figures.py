@@ -14,7 +14,7 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.body.character_mesh import build_character
 from motion_backend.body.face_track import face_track
 from motion_backend.body.skinning import SkinnedMesh, skin
-from motion_backend.props import PropTrack, prop_shape, prop_tracks
+from motion_backend.props import PropTrack, prop_tracks
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid
 from motion_backend.walls import Side
@@ -62,7 +62,7 @@ class Acting:
         for track in self.props:
             now = frame - track.start
             if 0 <= now < len(track.positions):
-                shape = prop_shape(track.prop)
+                shape = track.shape
                 moved = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
                 found.append(_Triangles(*moved, shape.faces, shape.colors))
         return found
