@@ -216,6 +216,7 @@ class Story:
             reason=figure.reason,
             seconds=figure.seconds,
             otherwise=(*done, *filter(None, (self.planned.stage.instead(figure.keyframe),))),
+            does=self.role.worked[figure.keyframe].does if figure.keyframe in self.role.worked else "",
         )
 
     @property
@@ -223,9 +224,9 @@ class Story:
         """The story as it is told, with all among its thoughts that the body was not seen doing."""
         return self.planned.told.with_unseen(lost_in_moving(self.planned.script.beats, self._shots))
 
-    @property
+    @cached_property
     def role(self) -> Role:
-        """Who is seen, what the face shows, and what the hands hold."""
+        """Who is seen, what the face shows, and what the hands hold, open and switch."""
         return role_of(self.planned.character, self.actions, self.planned.script, self.planned.home)
 
 

@@ -23,7 +23,7 @@ Rgb = tuple[float, float, float]
 Painted = tuple[Rgb, Shape]
 """A shape and its colour, sRGB; what is brighter than 1 shines by itself."""
 Kind = Literal["front", "light"]
-SWING: Final = np.radians(105.0)
+SWING: Final = np.radians(88.0)
 """How far a door opens."""
 PULLED, MAX_PULLED = 0.65, 0.34
 """How far a drawer comes out: a share of the depth of its piece, and at most so many metres."""
