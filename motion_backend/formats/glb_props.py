@@ -65,11 +65,15 @@ def lanes(tracks: Iterable[PropTrack]) -> list[list[PropTrack]]:
 def prop_keys(lane: Sequence[PropTrack], frames: int) -> tuple[NDArray[np.int64], Array, Array, Array]:
     """The keys of tracks that follow one another: frames (K,), positions (K, 3), turns (K, 4), sizes (K,).
 
-    Around each is a key of no size where the motion has a frame for it.
+    Around each is a key of no size where the motion has a frame for it; while nothing of it changes it has keys at both
+    ends of that alone.
     """
     rows = [_padded(track, frames) for track in lane]
     numbers, positions, turns, sizes = (np.concatenate(column) for column in zip(*rows, strict=True))
-    return numbers, positions, rotations.continuous(rotations.normalize(turns)), sizes
+    turns = rotations.continuous(rotations.normalize(turns))
+    changes = np.any(np.diff(np.column_stack([positions, turns, sizes]), axis=0) != 0, axis=1)
+    kept = np.concatenate([[True], changes]) | np.concatenate([changes, [True]])
+    return numbers[kept], positions[kept], turns[kept], sizes[kept]
 
 
 def _padded(track: PropTrack, frames: int) -> tuple[NDArray[np.int64], Array, Array, Array]:

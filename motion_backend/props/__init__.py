@@ -3,7 +3,18 @@
 from motion_backend.props.fixture_tracks import works
 from motion_backend.props.prop_frames import PropTrack
 from motion_backend.props.prop_shapes import PropShape, prop_shape
-from motion_backend.props.prop_table import Held, held_in, shown_as
+from motion_backend.props.prop_table import Held, held_in, shown_as, things_named
 from motion_backend.props.prop_tracks import prop_points, prop_tracks
 
-__all__ = ["Held", "PropShape", "PropTrack", "held_in", "prop_points", "prop_shape", "prop_tracks", "shown_as", "works"]
+__all__ = [
+    "Held",
+    "PropShape",
+    "PropTrack",
+    "held_in",
+    "prop_points",
+    "prop_shape",
+    "prop_tracks",
+    "shown_as",
+    "things_named",
+    "works",
+]

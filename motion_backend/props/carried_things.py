@@ -31,6 +31,8 @@ OVER_RIM: Final = 0.045
 """How far a large thing may lie over the rim of what it lies on (metres)."""
 CHANGES: Final = 0.15
 """Half the seconds in which a thing goes from a table into a hand, or is held otherwise."""
+CLEAR: Final = 0.3
+"""Seconds before a hand is down, and after, in which what hangs from it would be in the table."""
 NEAR: Final = 0.6
 """From farther away nothing comes into the hand (metres)."""
 
@@ -92,7 +94,7 @@ class _Places:
                     self._turn(row[0], self._in_hand(moment.grip.hand))
             elif moment.skill is Skill.TOUCH:
                 self._reach(moment, goes_on)
-            elif not self._is_held():
+            elif not self._is_held() and moment.held is None:  # a shut book is not there for an open one
                 self._turn(moment.start, self._in_hand("right"))
         if self._is_held():
             self._turn(min(last, frames), NOWHERE)
@@ -109,25 +111,33 @@ class _Places:
         if named is None:
             return
         first, last = self._contact(moment)
-        middle, held = (first + last) // 2, self._is_held()
+        begins, ends = self._changes(first, last)
+        held = self._is_held()
         puts = "put down" in moment.caption or (held and not goes_on)
         takes = not (puts or held) and ("pick up" in moment.caption or goes_on)
         there = self._number(self._lying(moment)) if named.on_top and named.at is not None else NOWHERE
         if takes:
             if self._holder() is None:
                 self._turn(self._since(), there)
-            elif self._is_far(named.hand, middle):
-                self._turn(max(middle - 1, 0), NOWHERE)
-            self._turn(middle, self._in_hand(named.hand))
+            elif self._is_far(named.hand, ends):
+                self._turn(max(ends - 1, 0), NOWHERE)
+            self._turn(ends, self._in_hand(named.hand))
         elif puts:
             if not held:
                 self._turn(moment.start, self._in_hand(named.hand))
-            self._turn(middle, there)
+            self._turn(max(begins, moment.start), there)
         elif self._holder() is None and there != NOWHERE:
             self._turn(self._since(), there)
         elif self._holder() is None:
             self._turn(first, self._in_hand(named.hand))
             self._turn(last, self._in_hand(named.hand) if goes_on else NOWHERE)
+
+    def _changes(self, first: int, last: int) -> tuple[int, int]:
+        """From when on a thing is put down by a hand that is there from one frame to another, and taken: what hangs
+        from the hand before that is down, and once that is up again."""
+        middle, clear = (first + last) // 2, round(CLEAR * self.hands.fps)
+        hangs = self.shape.way == "hanging"
+        return (first - clear, last + clear) if hangs else (middle, middle)
 
     def _contact(self, moment: Moment) -> tuple[int, int]:
         """First and last frame in which a hand is at what it reaches for; without a place, as far out as it gets."""
@@ -162,7 +172,7 @@ class _Places:
     def _is_far(self, hand: str, frame: int) -> bool:
         """Whether it lies where the hand is not."""
         holder = self._holder()
-        palm = self.hands.palms[frame, 0 if hand == "left" else 1]
+        palm = self.hands.palms[min(frame, len(self.hands.palms) - 1), 0 if hand == "left" else 1]
         return isinstance(holder, Lying) and float(np.linalg.norm(holder.position - palm)) > NEAR
 
     def _in_hand(self, hand: str) -> int:
@@ -209,13 +219,20 @@ def _track(
     positions, turns, sizes = _held_by(hands, holders[own[0]], start, stop)
     for begin in begins[1:]:
         first = max(begin - half, 0)
-        place, turn, size = _held_by(hands, holders[own[begin]], start + first, stop)
-        share = np.clip((np.arange(len(place)) + 1) / (2 * half), 0.0, 1.0)
+        later = _held_by(hands, holders[own[begin]], start + first, stop)
+        last = min(first + 2 * half, stop - start)
+        share = np.arange(1, last - first + 1) / (2 * half)
         share = share * share * (3 - 2 * share)
-        before = positions[first:]
-        positions = np.concatenate([positions[:first], before + share[:, None] * (place - before)])
-        turns = np.concatenate([turns[:first], rotations.slerp(turns[first:], turn, share)])
-        sizes = np.concatenate([sizes[:first], sizes[first:] + share * (size - sizes[first:])])
+        soft = slice(first, last)
+        mixed = (
+            positions[soft] + share[:, None] * (later[0][: last - first] - positions[soft]),
+            rotations.slerp(turns[soft], later[1][: last - first], share),
+            sizes[soft] + share * (later[2][: last - first] - sizes[soft]),
+        )
+        positions, turns, sizes = (
+            np.concatenate([before[:first], between, after[last - first :]])
+            for before, between, after in zip((positions, turns, sizes), mixed, later, strict=True)
+        )
     lying = np.array([isinstance(holders[label], Lying) for label in own])
     sizes = sizes * growth(start, stop, len(labels), hands.fps)
     return PropTrack(prop, start, positions, rotations.continuous(rotations.normalize(turns)), sizes, lying)

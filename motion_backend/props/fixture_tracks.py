@@ -30,7 +30,7 @@ AT: Final = 0.03
 """A hand is at a thing while it is no farther from it than this from its nearest (metres)."""
 NEAR: Final = 0.45
 """From farther away nothing is opened (metres)."""
-IN_THE_WAY: Final = 0.17
+IN_THE_WAY: Final = 0.12
 """A door keeps this far from the middle of a body (metres)."""
 STEPS: Final = 21
 """Places of a door that are looked at for that."""

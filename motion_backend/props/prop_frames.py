@@ -100,6 +100,15 @@ class PropTrack:
         held = np.ones(len(self.positions), dtype=bool) if self.lying is None else ~self.lying
         return tuple((self.start + start, self.start + stop) for start, stop in runs_of(held))
 
+    def lies(self, start: int, stop: int) -> bool:
+        """Whether it lies where it is in all of these frames, whole."""
+        first, last = start - self.start, stop - self.start
+        if self.lying is None or first < 0 or last > len(self.positions):
+            return False
+        whole = self.lying[first:last] & (self.sizes[first:last] == 1.0)
+        still = [not np.ptp(one[first:last], axis=0).any() for one in (self.positions, self.turns)]
+        return bool(whole.all()) and all(still)
+
     def is_held(self, frame: int) -> bool:
         """Whether it is in the hands at a frame."""
         now = frame - self.start

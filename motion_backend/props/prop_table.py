@@ -172,8 +172,9 @@ def things_named() -> Mapping[str, tuple[Called, ...]]:
 
 def shown_as(thing: str, *captions: Held | None) -> Called | None:
     """How a thing of that name is seen: as what most captions hold for it, of several shapes that it is called; None
-    of what has no shape. A thing is called by its last word, or its last two: "red cup", "watering can"."""
-    words = thing.lower().split()[-2:]
-    rows = things_named().get("-".join(words)) or things_named().get("".join(words[-1:])) or ()
+    of what has no shape. A thing is called by its last word, or its last two: "red cups", "watering can"."""
+    words, known = thing.lower().split()[-2:], things_named()
+    called = ("-".join(words), "".join(words[-1:]), "".join(words[-1:]).removesuffix("s"))
+    rows = next((known[word] for word in called if word in known), ())
     holding = [grip for row in captions if row is not None for grip in row.props]
     return max(rows, key=lambda row: sum(map(row.is_held_for, holding)), default=None)

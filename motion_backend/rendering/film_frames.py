@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Final
 
@@ -11,10 +11,11 @@ import numpy as np
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Character, Motion
+from motion_backend.props import PropTrack
 from motion_backend.rendering.film_backdrop import Backdrop
 from motion_backend.rendering.film_picture import Planes
 from motion_backend.rendering.film_shots import FilmShot, film_shots
-from motion_backend.rendering.motion_figures import Acting
+from motion_backend.rendering.motion_figures import Acting, lying_solids
 from motion_backend.rotations import IDENTITY
 from motion_backend.skeleton import build_skeleton
 
@@ -41,24 +42,33 @@ def film_frames(
     """
     acting = Acting.of(motion, role)
 
-    def batch(scene: Future[Backdrop], frames: range) -> list[Planes]:
-        bodies = acting.solids(frames)
+    def batch(scene: Future[Backdrop], frames: range, lying: Sequence[PropTrack]) -> list[Planes]:
+        bodies = acting.solids(frames, but=lying)
         return [dressed(i, scene.result().with_body(body)) for i, body in zip(frames, bodies, strict=True)]
 
     with ThreadPoolExecutor(WORKERS) as pool:
         waiting: deque[Future[list[Planes]]] = deque()
-        before: list[tuple[FilmShot, Future[Backdrop]]] = []
+        before: list[tuple[FilmShot, list[PropTrack], Future[Backdrop]]] = []
         for shot in shots:
-            # Behind a close-up the shot that it stands in goes on.
-            same = next((drawn for one, drawn in before if one.scene is shot.scene), None)
-            scene = same or pool.submit(Backdrop.of, shot.scene, shot.camera, size)
-            before = [*before[-1:], (shot, scene)]
             for start in range(shot.start, shot.stop, BATCH):
-                waiting.append(pool.submit(batch, scene, range(start, min(start + BATCH, shot.stop))))
+                frames = range(start, min(start + BATCH, shot.stop))
+                lying = acting.lying(frames.start, frames.stop)
+                # Behind a close-up the shot that it stands in goes on.
+                same = (drawn for one, here, drawn in before if one.scene is shot.scene and _same(here, lying))
+                if (scene := next(same, None)) is None:
+                    whole = [*shot.scene, *lying_solids(lying, start, shot.camera)]
+                    scene = pool.submit(Backdrop.of, whole, shot.camera, size)
+                if not before or before[-1][2] is not scene:
+                    before = [*before[-1:], (shot, lying, scene)]
+                waiting.append(pool.submit(batch, scene, frames, lying))
                 while len(waiting) > AHEAD:
                     yield from waiting.popleft().result()
         while waiting:
             yield from waiting.popleft().result()
+
+
+def _same(some: Sequence[PropTrack], others: Sequence[PropTrack]) -> bool:
+    return len(some) == len(others) and all(one is other for one, other in zip(some, others, strict=True))
 
 
 def compile_film() -> None:

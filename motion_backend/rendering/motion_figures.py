@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -27,6 +27,10 @@ ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "c
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
 
+REACH = 4.5
+"""What is farther from the body, or from what a camera looks at, is of no picture of it (metres)."""
+
+
 @dataclass(frozen=True)
 class Acting:
     """Somebody acting a motion, ready to be drawn at any of its frames."""
@@ -44,8 +48,8 @@ class Acting:
         mesh, face = build_character(motion.skeleton, role.look), face_track(motion, role)
         return Acting(motion, mesh, face, prop_tracks(motion, role))
 
-    def solids(self, frames: Sequence[int], opacity: float = 1.0) -> list[Solid]:
-        """The body at some frames, each with what it holds."""
+    def solids(self, frames: Sequence[int], opacity: float = 1.0, but: Collection[PropTrack] = ()) -> list[Solid]:
+        """The body at some frames, each with what it holds and what lies about, `but` for some of that."""
         mesh, motion, chosen = self.mesh, self.motion, np.asarray(frames)
         poses = (motion.root_positions[chosen], motion.local_rotations[chosen])
         vertices, normals = skin(mesh, motion.skeleton, *poses, self.face[chosen])
@@ -53,19 +57,38 @@ class Acting:
             _Triangles(points, turned, mesh.faces, mesh.face_colors)
             for points, turned in zip(vertices, normals, strict=True)
         ]
-        whole = [_joined([body, *self._held(frame)]) for frame, body in zip(chosen.tolist(), bodies, strict=True)]
+        shown = [track for track in self.props if all(track is not one for one in but)]
+        whole = [_joined([body, *self._held(frame, shown)]) for frame, body in zip(frames, bodies, strict=True)]
         return [Solid(all_.vertices, all_.faces, all_.colors, all_.normals, opacity=opacity) for all_ in whole]
 
-    def _held(self, frame: int) -> list[_Triangles]:
-        """What is in the hands at a frame."""
+    def lying(self, start: int, stop: int) -> list[PropTrack]:
+        """What lies somewhere from one frame to another and is not touched."""
+        return [track for track in self.props if track.lies(start, stop)]
+
+    def _held(self, frame: int, tracks: Sequence[PropTrack]) -> list[_Triangles]:
+        """What is in the hands at a frame, or lies near."""
         found = []
-        for track in self.props:
+        for track in tracks:
             now = frame - track.start
-            if 0 <= now < len(track.positions):
+            if not 0 <= now < len(track.positions):
+                continue
+            away = np.linalg.norm(track.positions[now] - self.motion.root_positions[frame])
+            if track.is_held(frame) or away < REACH:
                 shape = track.shape
                 moved = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
                 found.append(_Triangles(*moved, shape.faces, shape.colors))
         return found
+
+
+def lying_solids(tracks: Sequence[PropTrack], frame: int, camera: Camera, reach: float = REACH) -> list[Solid]:
+    """What lies within reach of a camera's target at a frame."""
+    found = []
+    for track in tracks:
+        now, shape = frame - track.start, track.shape
+        if np.linalg.norm(track.positions[now] - np.asarray(camera.target)) < reach:
+            vertices, _ = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
+            found.append(Solid(vertices, shape.faces, shape.colors))
+    return found
 
 
 class _Triangles(NamedTuple):
@@ -151,7 +174,7 @@ def around(
     camera: Camera,
     points: NDArray[np.floating],
     room: int | None = None,
-    reach: float = 4.5,
+    reach: float = REACH,
 ) -> list[Solid]:
     """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room:
     of a wall the foot is left."""

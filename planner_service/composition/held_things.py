@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from motion_backend.motion import RISINGS, Emotion, Skill
-from motion_backend.props import held_in, shown_as
+from motion_backend.props import held_in, shown_as, things_named
 from planner_service.composition.deed_lexicon import pieces_in
 from planner_service.composition.whereabouts import is_held
 from planner_service.scripts.acted_beats import connects
@@ -33,6 +33,7 @@ _LARGE: Final = "box"
 _MEANT: Final = frozenset(("it", "them", "one"))
 _NAMED_AFTER: Final = frozenset(("with", "up", "down", "out", "off", "away", "back", "over"))
 """Words after which a deed still names what it is done to, or with: "picks up a letter"."""
+_LISTS: Final = frozenset((",", "and"))
 _FILLED: Final = frozenset(("glass", "drink", "cup"))
 """What is named by what is in it: "a glass of wine"."""
 _OWN: Final = frozenset(("his", "her", "their", "my", "reading"))
@@ -65,10 +66,11 @@ class _Hands:
     last: str = ""
     """What was named last, which "it" may be."""
 
-    def name(self, number: int, clause: Clause) -> None:
-        """Note what a keyframe's clause has in the hands in it."""
+    def name(self, number: int, clause: Clause, nth: int) -> None:
+        """Note what a keyframe's clause has in the hands in it: where it is done at several places, there the `nth`."""
         keyframe = self.keyframes[number]
-        thing = thing_in(clause, keyframe) or (self.last if _MEANT & set(clause.lemmas[1:3]) else "")
+        told = things_in(clause, keyframe) or [self.last] * bool(_MEANT & set(clause.lemmas[1:3]))
+        thing = told[min(nth, len(told) - 1)] if told else ""
         if not thing:
             return
         self.last = thing
@@ -76,7 +78,8 @@ class _Hands:
         if number in self.named or not _may_hold(keyframe, thing, takes):
             return
         self.named[number] = thing
-        lays = keyframe.skill is Skill.TOUCH and clause.verb in theme_words()["putting_verbs"]
+        puts = clause.verb in theme_words()["putting_verbs"] and clause.lemmas[1:2] != ("on",)  # no coat
+        lays = keyframe.skill is Skill.TOUCH and puts
         self.laid |= {number} if lays else set()
         row = held_in(keyframe.skill, keyframe.caption, thing) is not None
         eaten = "eating" in keyframe.caption
@@ -84,7 +87,7 @@ class _Hands:
 
     def hold(self, beat: int, clause: Clause, near: Sequence[int]) -> None:
         """Put what is only told to be held into the hands in what is done meanwhile: "reads, holding a candle"."""
-        thing = thing_in(clause, None)
+        thing = next(iter(things_in(clause)), "")
         there = [
             number for number, one in enumerate(self.keyframes)
             if one.beat in near and one.skill not in RISINGS and number not in self.named
@@ -153,14 +156,15 @@ def with_things(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) 
         own = [one for one in (keyframe.beat, *keyframe.also) if one is not None]
         latest = max(own, default=-1)
         for beat in [one for one in range(latest) if one not in told and one not in own]:
-            hands.last = thing_in(read[beat].clause, None) or hands.last
+            hands.last = next(iter(things_in(read[beat].clause)), hands.last)
             told.add(beat)
         if connects(keyframe) and keyframe.skill is not Skill.LOCO:
             continue
         for beat in own:
             walks_only = connects(keyframe) and _is_done_later(number, beat, keyframes)
             if not walks_only:
-                hands.name(number, read[beat].clause)
+                done = [one for one in range(number) if one in hands.named and keyframes[one].beat == beat]
+                hands.name(number, read[beat].clause, len(done))
                 told.add(beat)
     for beat, one in enumerate(read):
         if is_held(one.clause) and not any(beat in (keyframe.beat, *keyframe.also) for keyframe in keyframes):
@@ -184,7 +188,7 @@ def _may_hold(keyframe: PlannedKeyframe, thing: str, takes: bool) -> bool:
         return False
     if row is not None:
         named = shown_as(thing, row)
-        return named is not None and any(grip.prop == named.shape for grip in row.props)
+        return named is not None and any(grip.prop in (named.shape, *named.words.split()) for grip in row.props)
     if keyframe.skill is Skill.TOUCH:
         return bool(_HANDS_IT.search(keyframe.caption))
     return takes and (keyframe.caption == CARRIED or _are_free(keyframe, thing, True))
@@ -202,17 +206,19 @@ def _are_free(keyframe: PlannedKeyframe, thing: str, reaching: bool) -> bool:
     return not (resting or touching or holds or _BUSY.search(keyframe.caption))
 
 
-def thing_in(clause: Clause, keyframe: PlannedKeyframe | None) -> str:
-    """The thing with a shape that a clause's deed is done to, or with; of a keyframe that holds something, also what
-    else its words name that it may hold: "looks at the photo". "" where there is none."""
+def things_in(clause: Clause, keyframe: PlannedKeyframe | None = None) -> list[str]:
+    """The things with a shape that a clause's deed is done to, or with; of a keyframe that holds something, also what
+    else its words name that it may hold: "looks at the photo"."""
     row = held_in(keyframe.skill, keyframe.caption) if keyframe is not None else None
+    found, before = [], ""
     for led, words in _phrases(clause):
+        before = before if led in _LISTS else led
         thing = _last_thing(words)
         shape = shown_as(thing, row) if thing else None
         fits = row is not None and shape is not None and any(map(shape.is_held_for, row.props))
-        if thing and (not led or led in _NAMED_AFTER or fits):
-            return thing
-    return ""
+        if thing and (not before or before in _NAMED_AFTER or fits):
+            found.append(thing)
+    return found
 
 
 def _phrases(clause: Clause) -> list[tuple[str, list[str]]]:
@@ -220,7 +226,7 @@ def _phrases(clause: Clause) -> list[tuple[str, list[str]]]:
     it."""
     found: list[tuple[str, list[str]]] = [("", [])]
     sought = clause.verb in ("look", "search", "hunt", "seek", "miss", "need", "want")
-    apart = grammar().prepositions | grammar().joints | _NAMED_AFTER | {"to", "while", "until", ",", "and"}
+    apart = grammar().prepositions | grammar().joints | _NAMED_AFTER | {"to", "while", "until"} | _LISTS
     for token in tokens_of(clause.text)[1:]:
         word = token.low
         if word == "of":
@@ -239,7 +245,7 @@ def _last_thing(words: Sequence[str]) -> str:
     """The thing that a phrase is of, by its last noun: of "the wine glass" that, of "the coffee table" none."""
     for place in range(len(words) - 1, -1, -1):
         word, before = words[place], words[place - 1] if place else ""
-        thing = lemma_of(word)
+        thing = word if word in things_named() else lemma_of(word)
         if word == "glasses":
             thing = "glasses" if before in _OWN else "glass"
         pair = f"{before} {thing}"

@@ -16,7 +16,7 @@ from sample_motions import standing_still, tumbling
 from motion_backend import rotations
 from motion_backend.body.cast import Role
 from motion_backend.formats.glb_film import body_glb, film_glb, meshes_to_glb, props_glb, scene_glb
-from motion_backend.formats.glb_props import lanes
+from motion_backend.formats.glb_props import lanes, prop_keys
 from motion_backend.formats.gltf_document import read_glb
 from motion_backend.motion import Emotion, Motion, Skill
 from motion_backend.props import PropTrack, prop_tracks
@@ -189,10 +189,13 @@ def test_a_prop_is_a_node_where_its_track_has_it_and_of_no_size_elsewhere():
         np.testing.assert_allclose(scale[there], track.sizes, atol=5e-3)
         np.testing.assert_allclose(scale[~there], 0.0, atol=1e-6)
         times, places = animated(document, binary, NODE, "translation")
-        inside = np.isin(np.rint(times * motion.fps).astype(int), frames[there])
-        np.testing.assert_allclose(places[inside], track.positions, atol=1e-5)
+        between = [np.interp(frames[there] / motion.fps, times, places[:, axis]) for axis in range(3)]
+        np.testing.assert_allclose(np.transpose(between), track.positions, atol=1e-5)
+        keys = np.rint(times * motion.fps).astype(int)
+        inside = np.isin(keys, frames[there])
         _, turns = animated(document, binary, NODE, "rotation")
-        np.testing.assert_allclose(np.abs(np.sum(turns[inside] * track.turns, axis=1)), 1.0, atol=1e-4)
+        own = track.turns[keys[inside] - track.start]
+        np.testing.assert_allclose(np.abs(np.sum(turns[inside] * own, axis=1)), 1.0, atol=1e-4)
 
 
 def test_props_change_nothing_of_the_body_and_a_body_alone_has_none():
@@ -216,6 +219,16 @@ def test_what_comes_again_is_the_same_node_and_two_at_once_are_two():
     assert [[(one.prop, one.start) for one in lane] for lane in found] == [
         [("cup", 0), ("cup", 50)], [("phone", 5)], [("cup", 10)],
     ]  # fmt: skip
+
+
+def test_what_lies_there_all_the_time_has_two_keys():
+    turns = np.tile(rotations.IDENTITY, (900, 1))
+    lying = PropTrack("book", 0, np.zeros((900, 3)), turns, np.ones(900))
+    frames, *_ = prop_keys([lying], 900)
+    assert frames.tolist() == [0, 899]
+    later = PropTrack("book", 100, np.zeros((300, 3)), turns[:300], np.ones(300))
+    frames, _, _, sizes = prop_keys([later], 900)
+    assert (frames.tolist(), sizes.tolist()) == ([99, 100, 399, 400], [0.0, 1.0, 1.0, 0.0])
 
 
 def test_the_same_film_with_props_has_the_same_bytes():
