@@ -31,7 +31,9 @@ AT: Final = 0.03
 NEAR: Final = 0.45
 """From farther away nothing is opened (metres)."""
 IN_THE_WAY: Final = 0.12
-"""A door keeps this far from the middle of a body (metres)."""
+"""A door keeps this far from the middle of hips and head (metres)."""
+OVERHEAD: Final = 1.3
+"""What reaches no higher opens under a head (metres)."""
 STEPS: Final = 21
 """Places of a door that are looked at for that."""
 AGAIN: Final = 3.0
@@ -60,7 +62,7 @@ def fixture_tracks(hands: Hands, motion: Motion, role: Role) -> Iterator[PropTra
         if deed:
             deeds.setdefault((deed.worked.piece.id, kind_of(deed.worked.does)), []).append(deed)
     for (_, kind), done in deeds.items():
-        yield from _lights(motion, done) if kind == "light" else _fronts(motion, done)
+        yield from _lights(motion, done) if kind == "light" else _fronts(hands, motion, done)
 
 
 def kind_of(does: str) -> Kind:
@@ -95,7 +97,7 @@ def _lights(motion: Motion, done: Sequence[_Deed]) -> Iterator[PropTrack]:
             yield from _tracks(piece, f"light{number}", moving, lit.astype(np.float64))
 
 
-def _fronts(motion: Motion, done: Sequence[_Deed]) -> Iterator[PropTrack]:
+def _fronts(hands: Hands, motion: Motion, done: Sequence[_Deed]) -> Iterator[PropTrack]:
     """The doors or drawers of a piece that are open, and what is seen behind them."""
     piece = done[0].worked.piece
     found = _all(piece, "front")
@@ -103,10 +105,10 @@ def _fronts(motion: Motion, done: Sequence[_Deed]) -> Iterator[PropTrack]:
     by_front: dict[int, list[_Deed]] = {}
     for deed in done:
         if chosen is None or by_front[chosen][-1].worked.does == "close":
-            chosen = _front(found, motion, deed)
+            chosen = _front(found, hands, motion, deed)
         by_front.setdefault(chosen, []).append(deed)
     for number, deeds in sorted(by_front.items()):
-        shares = _shares(found[number], motion, deeds)
+        shares = _shares(found[number], hands, motion, deeds)
         for place, moving in enumerate(found[number].moving):
             yield from _tracks(piece, f"front{number}_{place}", moving, shares)
 
@@ -115,36 +117,38 @@ def _all(piece: Placed, kind: Kind) -> list[Mechanism]:
     return [one for one in mechanisms(piece) if one.kind == kind]
 
 
-def _front(found: Sequence[Mechanism], motion: Motion, deed: _Deed) -> int:
+def _front(found: Sequence[Mechanism], hands: Hands, motion: Motion, deed: _Deed) -> int:
     """The one that a hand is at; of those as near to it the one that the body is least in the way of."""
     hand = deed.worked.piece.to_local(np.array(deed.worked.at))
 
     def rank(number: int) -> tuple[float, float]:
         one = found[number]
         gap = np.maximum(np.maximum(np.array(one.low) - hand, hand - np.array(one.high)), 0.0)
-        body = _bodies(motion, deed.worked.piece, deed.first, deed.first + 1)
+        body = _bodies(hands, motion, deed.worked.piece, deed.first, deed.first + 1)
         return round(float(np.hypot(gap[0], gap[1])), 1), -float(_clearance(one, body).min())
 
     return min(range(len(found)), key=rank)
 
 
-def _bodies(motion: Motion, piece: Placed, start: int, stop: int) -> Array:
-    """Where the body stands, [x, z] in the frame of a piece. (N, 2)."""
-    return piece.to_local(motion.root_positions[start:stop].astype(np.float64))[:, [0, 2]]
+def _bodies(hands: Hands, motion: Motion, piece: Placed, start: int, stop: int) -> Array:
+    """Where hips and head are, [x, z] in the frame of a piece. (N, 2, 2)."""
+    both = np.stack([motion.root_positions[start:stop].astype(np.float64), hands.head_at[start:stop]], axis=1)
+    return piece.to_local(both)[..., [0, 2]]
 
 
 def _clearance(front: Mechanism, bodies: Array) -> Array:
-    """How far bodies (N, 2) are from what swings or slides, at each of its places. (N, STEPS)."""
+    """How far bodies (N, 2, 2) are from what swings or slides, at each of its places. (N, STEPS)."""
     leaf = front.moving[-1]
     share = np.linspace(0.0, 1.0, STEPS)
     turn = leaf.turn * share
     along = np.stack([np.cos(turn), -np.sin(turn)], axis=1)  # of x, turned about +Y
     origin = np.array(leaf.pivot)[[0, 2]] + share[:, None] * np.array(leaf.way)[[0, 2]]
+    bodies = bodies[:, : 1 + (front.high[1] > OVERHEAD)]
     start, end = origin + front.leaf[0] * along, origin + front.leaf[1] * along
     way = end - start
-    part = np.einsum("nsk,sk->ns", bodies[:, None] - start, way) / np.maximum(np.sum(way * way, axis=1), 1e-9)
-    nearest = start + np.clip(part, 0.0, 1.0)[..., None] * way
-    return np.asarray(np.linalg.norm(bodies[:, None] - nearest, axis=-1))
+    away = bodies[:, :, None] - start  # (N, 1 or 2, STEPS, 2)
+    part = np.sum(away * way, axis=-1) / np.maximum(np.sum(way * way, axis=1), 1e-9)
+    return np.asarray(np.linalg.norm(away - np.clip(part, 0.0, 1.0)[..., None] * way, axis=-1).min(axis=1))
 
 
 def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[tuple[bool, int, int]]:
@@ -164,22 +168,22 @@ def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[tuple[bool, int, int]]
             yield False, deed.last, deed.last + round(MOVES * fps)
 
 
-def _shares(front: Mechanism, motion: Motion, deeds: Sequence[_Deed]) -> Array:
+def _shares(front: Mechanism, hands: Hands, motion: Motion, deeds: Sequence[_Deed]) -> Array:
     """How far open a front is, 0 to 1. (T,)."""
     shares = np.full(len(motion), float(deeds[0].worked.does == "close"))
     for opens, since, until in _swings(deeds, motion.fps):
         if opens:
-            shares[since:] = _opening(front, motion, deeds[0].worked.piece, since)
+            shares[since:] = _opening(front, hands, motion, deeds[0].worked.piece, since)
         else:
             left = (until - np.arange(since, len(motion))) / max(until - since, 1)
             shares[since:] = shares[since] * np.clip(left, 0.0, 1.0)
     return np.asarray(shares * shares * (3 - 2 * shares))
 
 
-def _opening(front: Mechanism, motion: Motion, piece: Placed, since: int) -> Array:
+def _opening(front: Mechanism, hands: Hands, motion: Motion, piece: Placed, since: int) -> Array:
     """How far open a front is from a frame on, before that is eased: as far as the body leaves it room, and on once
     that is gone. (T - since,)."""
-    blocked = _clearance(front, _bodies(motion, piece, since, len(motion))) < IN_THE_WAY
+    blocked = _clearance(front, _bodies(hands, motion, piece, since, len(motion))) < IN_THE_WAY
     places = 0.5 - np.sin(np.arcsin(1.0 - 2.0 * np.linspace(0.0, 1.0, STEPS)) / 3.0)  # which are even once eased
     rate, share = 1.0 / (MOVES * motion.fps), 0.0
     found = np.zeros(len(motion) - since)

@@ -11,7 +11,9 @@ from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
-from scene_graphs.furniture import categories_of, class_of
+from scene_graphs.furniture import canonical, categories_of, class_of, typical_size
+from scene_graphs.furniture_shapes import parts
+from scene_graphs.meshes.mesh_details import fronts
 
 _MEANT: Final = frozenset(("it", "them", "one"))
 _INTO: Final = frozenset(("in", "into", "inside", "through", "from", "out", "drawer"))
@@ -19,23 +21,51 @@ _ONTO: Final = frozenset(("on", "onto", "upon", "top", "over", "under", "behind"
 _OPEN: Final = frozenset(("open", "ajar"))
 _SHUT: Final = frozenset(("shut", "closed"))
 _SWITCHED: Final = frozenset(("on", "off"))
+_DRAWERS: Final = "dresser"
+"""Where drawers are, where nobody says."""
 _STORES: Final = frozenset(("closet", "appliance"))
 """Classes of furniture in which things are, where nobody says that they are on it."""
 
 
 def with_worked(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) -> tuple[PlannedKeyframe, ...]:
     """Keyframes with what becomes of the piece under the hand: for every beat in the first that lays a hand on one."""
-    found, told, last = [], set[int](), ""
-    for keyframe in keyframes:
+    found, told, last = list(keyframes), set[int](), ""
+    for number, keyframe in enumerate(keyframes):
         does: Literal[Does, ""] = ""
         for beat in (keyframe.beat, *keyframe.also):
             if does or beat is None or beat in told or keyframe.skill is not Skill.TOUCH or keyframe.on_floor:
                 continue
             does = done_to(read[beat].clause, keyframe.piece[0], last)
             told |= {beat} if does else set()
+            if (
+                does in ("open", "into")
+                and "drawer" in read[beat].clause.lemmas
+                and not _has_drawers(keyframe.piece[0])
+            ):
+                _move(found, number, _DRAWERS)
         last = does or last
-        found.append(keyframe.model_copy(update={"does": does}) if does else keyframe)
+        found[number] = found[number].model_copy(update={"does": does}) if does else found[number]
     return tuple(found)
+
+
+def _has_drawers(piece: str) -> bool:
+    """Whether hands pull drawers out of a piece."""
+    return any(
+        front.slides
+        for part in parts(canonical(piece), typical_size(piece))
+        for front in fronts(canonical(piece), part)
+    )
+
+
+def _move(keyframes: list[PlannedKeyframe], number: int, piece: str) -> None:
+    """What is done at the piece of a keyframe, on the way to it and after it, is done at another."""
+    there = keyframes[number].furniture
+    for way in (range(number, -1, -1), range(number + 1, len(keyframes))):
+        for at in way:
+            if keyframes[at].furniture == there:
+                keyframes[at] = keyframes[at].model_copy(update={"furniture": piece})
+            elif not keyframes[at].on_floor:
+                break
 
 
 def done_to(clause: Clause, piece: str, last: str = "") -> Literal[Does, ""]:

@@ -116,10 +116,10 @@ def _inside(placed: Placed, low: Point3, high: Point3) -> tuple[Painted, ...]:
     count = int((y1 - y0) / 0.32)
     paints = FOOD if lit else THINGS
     for number in range(count):
-        y = y0 + (number + 0.5) * (y1 - y0) / count
+        y, room = y0 + (number + 0.5) * (y1 - y0) / count, (y1 - y0) / count / (1 + (number + 1 == count))
         found.append(((0.62, 0.68, 0.72) if lit else BOARD, block((x0, y - 0.008, z0), (x1, y + 0.008, z1 + BEFORE))))
         for place in range(int((x1 - x0) / 0.13)):
-            tall = (0.11, 0.17, 0.07, 0.14)[(number + 3 * place) % 4]
+            tall = min((0.11, 0.17, 0.07, 0.14)[(number + 3 * place) % 4], room - 0.03)
             x = x0 + 0.035 + 0.13 * place
             goods = block((x, y + 0.008, z0), (x + 0.08, y + 0.008 + tall, z1 + BEFORE))
             found.append((paints[(2 * number + place) % len(paints)], goods))
