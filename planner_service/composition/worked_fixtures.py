@@ -37,12 +37,9 @@ def with_worked(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) 
                 continue
             does = done_to(read[beat].clause, keyframe.piece[0], last)
             told |= {beat} if does else set()
-            if (
-                does in ("open", "into")
-                and "drawer" in read[beat].clause.lemmas
-                and not _has_drawers(keyframe.piece[0])
-            ):
-                _move(found, number, _DRAWERS)
+            drawer = does in ("open", "into") and "drawer" in read[beat].clause.lemmas
+            if drawer and not _has_drawers(keyframe.piece[0]):
+                _move(found, number, next(filter(_has_drawers, pieces_in(read[beat].text)), _DRAWERS))
         last = does or last
         found[number] = found[number].model_copy(update={"does": does}) if does else found[number]
     return tuple(found)
@@ -50,11 +47,8 @@ def with_worked(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) 
 
 def _has_drawers(piece: str) -> bool:
     """Whether hands pull drawers out of a piece."""
-    return any(
-        front.slides
-        for part in parts(canonical(piece), typical_size(piece))
-        for front in fronts(canonical(piece), part)
-    )
+    category = canonical(piece)
+    return any(front.slides for part in parts(category, typical_size(category)) for front in fronts(category, part))
 
 
 def _move(keyframes: list[PlannedKeyframe], number: int, piece: str) -> None:
