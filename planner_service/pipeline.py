@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Final, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
-from motion_backend.body.cast import Look, Role, acted_captions, named_things
+from motion_backend.body.cast import InHand, Look, Role, Worked, acted_captions, named_things
 from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
@@ -338,7 +338,16 @@ def role_of(character: Character, actions: Sequence[Action], script: LongScript,
         if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
     )
     worked = worked_pieces(actions, script.keyframes, home) if home is not None else {}
-    return Role(Look.of(character), emotions, asleep, acted_captions(actions), named_things(actions), worked)
+    return Role(Look.of(character), emotions, asleep, acted_captions(actions), _things(actions, worked), worked)
+
+
+def _things(actions: Sequence[Action], worked: Mapping[int, Worked]) -> dict[int, InHand]:
+    """What is named to be in the hands; out of what a hand reaches into, and not off its top."""
+    inside = {keyframe for keyframe, one in worked.items() if one.does == "into"}
+    return {
+        keyframe: replace(thing, on_top=thing.on_top and keyframe not in inside)
+        for keyframe, thing in named_things(actions).items()
+    }
 
 
 def _told_of(action: Action, script: LongScript) -> str:

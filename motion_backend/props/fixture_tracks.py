@@ -109,6 +109,7 @@ def _fronts(hands: Hands, motion: Motion, done: Sequence[_Deed]) -> Iterator[Pro
         by_front.setdefault(chosen, []).append(deed)
     for number, deeds in sorted(by_front.items()):
         shares = _shares(found[number], hands, motion, deeds)
+        shares = 1.0 - shares if found[number].drawn else shares
         for place, moving in enumerate(found[number].moving):
             yield from _tracks(piece, f"front{number}_{place}", moving, shares)
 
@@ -156,7 +157,9 @@ def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[tuple[bool, int, int]]
     is_open = deeds[0].worked.does == "close"
     for deed, following in zip(deeds, [*deeds[1:], None], strict=True):
         if deed.worked.does == "close":
-            yield False, max(deed.first - round((SLAMS if deed.slams else MOVES) * fps), 0), deed.first
+            long = round((SLAMS if deed.slams else MOVES) * fps)
+            since = max(deed.first - long, 0)
+            yield False, since, max(deed.first, min(since + long, round(MOVES * fps)))
             is_open = False
             continue
         if not is_open:

@@ -86,8 +86,8 @@ def lying_solids(tracks: Sequence[PropTrack], frame: int, camera: Camera, reach:
     for track in tracks:
         now, shape = frame - track.start, track.shape
         if np.linalg.norm(track.positions[now] - np.asarray(camera.target)) < reach:
-            vertices, _ = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
-            found.append(Solid(vertices, shape.faces, shape.colors))
+            vertices, normals = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
+            found.append(Solid(vertices, shape.faces, shape.colors, normals))
     return found
 
 

@@ -19,6 +19,7 @@ _MEANT: Final = frozenset(("it", "them", "one"))
 _INTO: Final = frozenset(("in", "into", "inside", "through", "from", "out", "drawer"))
 _ONTO: Final = frozenset(("on", "onto", "upon", "top", "over", "under", "behind", "beside"))
 _OPEN: Final = frozenset(("open", "ajar"))
+_APART: Final = frozenset(("open", "back", "apart", "aside"))
 _SHUT: Final = frozenset(("shut", "closed"))
 _SWITCHED: Final = frozenset(("on", "off"))
 _DRAWERS: Final = "dresser"
@@ -71,6 +72,8 @@ def done_to(clause: Clause, piece: str, last: str = "") -> Literal[Does, ""]:
     if switched:
         named = bool(table["switched_things"] & rest) or any(map(_is_lit, pieces))
         return switched if named or (meant and last in _SWITCHED) else ""
+    if clause.verb in ("draw", "pull") and "curtain" in rest:
+        return "open" if rest & _APART else "close"
     if table["opened_things"] & rest or pieces or (meant and last not in _SWITCHED):
         if clause.verb in table["shutting_verbs"] or rest & _SHUT:
             return "close"

@@ -9,9 +9,10 @@ from typing import Final
 from motion_backend.body.cast import Worked
 from motion_backend.motion import Action, Does, Skill
 from motion_backend.props import works
+from planner_service.grounding.opening_places import opening_piece
 from planner_service.scripts.script import PlannedKeyframe
 from scene_graphs.affordances.affordances import Spot
-from scene_graphs.furniture import categories_of
+from scene_graphs.furniture import categories_of, class_of
 from scene_graphs.home import Home
 from scene_graphs.layout import Placed
 
@@ -28,7 +29,7 @@ def worked_pieces(actions: Sequence[Action], keyframes: Sequence[PlannedKeyframe
     found: dict[int, Worked] = {}
     for action in actions:
         does = _does(keyframes[action.keyframe])
-        if action.skill is not Skill.TOUCH or action.spot is None or not does:
+        if action.skill is not Skill.TOUCH or action.spot is None or not does or action.lacks:
             continue
         before = next((one.piece for one in reversed(found.values()) if one.piece.category in SCREENS), None)
         piece = _piece(home, action.spot, keyframes[action.keyframe].piece[0], does, before)
@@ -50,8 +51,10 @@ def _does(keyframe: PlannedKeyframe) -> Does | None:
 def _piece(home: Home, spot: Spot, named: str, does: Does, before: Placed | None) -> Placed | None:
     """The piece that is meant by a hand at a spot: that which it is on, or what stands on that; a lamp that hangs in
     the room where nobody gets to it; a screen that is switched off from afar."""
-    own = next((one for one in home.objects if one.id == spot.object_id), None)
-    if own is None:
+    if spot.object_id in ("door", "window"):
+        return opening_piece(home, spot.object_id == "door", (spot.point[0], spot.point[2]))
+    own = home.object(spot.object_id)
+    if does in ("open", "close", "into") and class_of(own.category) != class_of(named):
         return None
     standing = [one for one in home.objects if one.parent == own.id]
     hanging = [

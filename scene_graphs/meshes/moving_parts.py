@@ -5,7 +5,7 @@ All of it is in the piece's own frame. It stands a hair before what is drawn of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -16,6 +16,7 @@ import numpy as np
 from scene_graphs.furniture_shapes import Part, form_of, parts_of
 from scene_graphs.layout import Placed, Point3
 from scene_graphs.meshes import materials as m
+from scene_graphs.meshes.interior_mesh import CURTAIN_FABRICS, LEAF
 from scene_graphs.meshes.mesh_details import FRONT, HANDLE, Front, front_material, fronts, screen_face, shade
 from scene_graphs.meshes.mesh_primitives import Shape, block, cylinder
 
@@ -37,6 +38,12 @@ FOOD: Final = ((1.0, 0.55, 0.35), (0.55, 0.85, 0.40), (1.05, 0.95, 0.55), (0.95,
 """Of the inside of other pieces, of the boards in it, and of what lies on these; in a refrigerator."""
 SKY, SUN, HILLS = (0.75, 1.25, 1.75), (1.9, 1.6, 0.6), ((0.45, 1.15, 0.55), (0.20, 0.70, 0.50))
 """What a screen shows."""
+ROOM_DOOR, CURTAINS = "room door", "window curtains"
+"""What doors and curtains of rooms are called, as pieces of their own."""
+DAY: Final = (1.55, 1.70, 1.85)
+"""Of what is outside an open door."""
+FOLD: Final = 0.07
+"""Of a curtain (metres)."""
 FLAME, WATER = (0.55, 0.85, 1.9), (0.95, 1.25, 1.45)
 
 
@@ -63,6 +70,8 @@ class Mechanism:
     high: Point3
     """Between which a hand is laid on it."""
     moving: tuple[Moving, ...]
+    drawn: bool = False
+    """Whether it is moved when it is shut, as curtains are."""
     leaf: tuple[float, float] = (0.0, 0.0)
     """From where to where along x what swings or slides, the last of `moving`, reaches from its pivot."""
 
@@ -70,6 +79,10 @@ class Mechanism:
 @lru_cache(maxsize=512)
 def mechanisms(placed: Placed) -> tuple[Mechanism, ...]:
     """All of a piece; none where nothing of it moves or lights."""
+    if placed.category == ROOM_DOOR:
+        return (_room_door(placed),)
+    if placed.category == CURTAINS:
+        return (_curtains(placed),)
     found: list[Mechanism] = []
     for part in parts_of(placed):
         found += [_opening(placed, part, front) for front in fronts(placed.category, part)]
@@ -77,6 +90,47 @@ def mechanisms(placed: Placed) -> tuple[Mechanism, ...]:
         if lit:
             found.append(Mechanism("light", part.low, part.high, (Moving(part.center, _about(part.center, lit)),)))
     return tuple(found)
+
+
+def _room_door(placed: Placed) -> Mechanism:
+    """A door of a room, which opens outwards, and the day that is seen where it was."""
+    leaf, handle = placed.shape
+    (x0, y0, z0), (x1, y1, z1) = leaf.low, leaf.high
+    hinge, turn = (x0, SWING) if handle.center[0] > leaf.center[0] else (x1, -SWING)
+    pivot = (hinge, y0, z0)
+    board = (
+        (_rgb(LEAF.color), block(leaf.low, leaf.high)),
+        (_rgb(m.METAL.color), block(handle.low, handle.high)),
+    )
+    day = [(DAY, _facing((x0, y0), (x1, y1), z1 + BEFORE))]
+    (left, low, _), (right, high, near) = handle.low, handle.high
+    day.append((DAY, _facing((left - BEFORE, low - BEFORE), (right + BEFORE, high + BEFORE), near + BEFORE)))
+    shut = (-pivot[0], -pivot[1], -pivot[2])
+    whole = Moving((0.0, 0.0, 0.0), tuple(day))
+    swings = Moving(pivot, _moved(board, shut), turn)
+    return Mechanism("front", leaf.low, leaf.high, (whole, swings), leaf=(x0 - hinge, x1 - hinge))
+
+
+def _facing(low: tuple[float, float], high: tuple[float, float], z: float) -> Shape:
+    """A rectangle between two corners [x, y] that is seen from +Z alone."""
+    corners = [(low[0], low[1], z), (high[0], low[1], z), (high[0], high[1], z), (low[0], high[1], z)]
+    return np.array(corners), np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+
+
+def _curtains(placed: Placed) -> Mechanism:
+    """Folds that are drawn before a window from both sides; open, they are within those that always hang there."""
+    w, h, d = placed.size
+    color = _rgb(CURTAIN_FABRICS[int(placed.id.partition("/")[0]) % len(CURTAIN_FABRICS)].color)
+    folds = []
+    count = int(np.ceil((w / 2 - 0.02) / FOLD))
+    for side in (-1.0, 1.0):
+        for number in range(count):
+            bunched = side * (w / 2 + 0.05 + FOLD * (number % 3))
+            spread = side * min((number + 0.5) * FOLD, w / 2)
+            z = d - 0.016 * (number % 2)
+            fold = block((-FOLD / 2 - 0.002, 0.0, -0.008), (FOLD / 2 + 0.002, h, 0.008))
+            folds.append(Moving((bunched, 0.0, z), ((color, fold),), way=(spread - bunched, 0.0, 0.0)))
+    return Mechanism("front", (-w / 2, 0.0, 0.0), (w / 2, h, d), tuple(folds), drawn=True)
 
 
 def _opening(placed: Placed, part: Part, front: Front) -> Mechanism:
@@ -96,7 +150,7 @@ def _opening(placed: Placed, part: Part, front: Front) -> Mechanism:
         leaf = Moving(pivot, _moved(board, shift), way=(0.0, 0.0, out))
     else:
         leaf = Moving(pivot, _moved(board, shift), turn=-SWING if front.hinge == x0 else SWING)
-    return Mechanism("front", front.low, front.high, (hole, leaf), (x0 - pivot[0], x1 - pivot[0]))
+    return Mechanism("front", front.low, front.high, (hole, leaf), leaf=(x0 - pivot[0], x1 - pivot[0]))
 
 
 def _tray(front: Front, out: float, color: Rgb) -> Iterator[Painted]:
@@ -167,5 +221,5 @@ def _about(origin: Point3, painted: tuple[Painted, ...]) -> tuple[Painted, ...]:
     return _moved(painted, (-origin[0], -origin[1], -origin[2]))
 
 
-def _moved(painted: tuple[Painted, ...] | list[Painted], by: Point3) -> tuple[Painted, ...]:
+def _moved(painted: Iterable[Painted], by: Point3) -> tuple[Painted, ...]:
     return tuple((color, (vertices + np.array(by), faces)) for color, (vertices, faces) in painted)
