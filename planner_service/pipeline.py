@@ -337,7 +337,7 @@ def role_of(character: Character, actions: Sequence[Action], script: LongScript,
         for action in actions
         if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
     )
-    worked = worked_pieces(actions, script.keyframes, home) if home is not None else {}
+    worked = worked_pieces(actions, script, home) if home is not None else {}
     return Role(Look.of(character), emotions, asleep, acted_captions(actions), _things(actions, worked), worked)
 
 

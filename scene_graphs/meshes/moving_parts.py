@@ -127,10 +127,17 @@ def _curtains(placed: Placed) -> Mechanism:
         for number in range(count):
             bunched = side * (w / 2 + 0.05 + FOLD * (number % 3))
             spread = side * min((number + 0.5) * FOLD, w / 2)
-            z = d - 0.016 * (number % 2)
-            fold = block((-FOLD / 2 - 0.002, 0.0, -0.008), (FOLD / 2 + 0.002, h, 0.008))
-            folds.append(Moving((bunched, 0.0, z), ((color, fold),), way=(spread - bunched, 0.0, 0.0)))
+            folds.append(Moving((bunched, 0.0, d), ((color, _fold(h)),), way=(spread - bunched, 0.0, 0.0)))
     return Mechanism("front", (-w / 2, 0.0, 0.0), (w / 2, h, d), tuple(folds), drawn=True)
+
+
+def _fold(height: float) -> Shape:
+    """One of a curtain, that is seen from +Z alone: it hides nobody where the wall before it is cut away."""
+    half = FOLD / 2 + 0.002
+    plan = [(-half, -0.016), (0.0, 0.006), (half, -0.016)]
+    corners = [(x, y, z) for x, z in plan for y in (0.0, height)]
+    faces = [(0, 2, 3), (0, 3, 1), (2, 4, 5), (2, 5, 3)]
+    return np.array(corners), np.array(faces, dtype=np.int32)
 
 
 def _opening(placed: Placed, part: Part, front: Front) -> Mechanism:
