@@ -104,7 +104,8 @@ def _room_door(placed: Placed) -> Mechanism:
     )
     day = [(DAY, _facing((x0, y0), (x1, y1), z1 + BEFORE))]
     (left, low, _), (right, high, near) = handle.low, handle.high
-    day.append((DAY, _facing((left - BEFORE, low - BEFORE), (right + BEFORE, high + BEFORE), near + BEFORE)))
+    around = ((left - BEFORE, low - BEFORE, z1), (right + BEFORE, high + BEFORE, near + BEFORE))
+    day.append((DAY, block(*around)))
     shut = (-pivot[0], -pivot[1], -pivot[2])
     whole = Moving((0.0, 0.0, 0.0), tuple(day))
     swings = Moving(pivot, _moved(board, shut), turn)
