@@ -8,7 +8,7 @@ ends it by putting it down, unless its caption says which; a reach that is a str
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
@@ -64,7 +64,8 @@ def carried_things(
         for busy, frames in others:
             labels[(labels == number) & frames & bool({*_hands_of(holder)} & {*busy})] = NOWHERE
     for start, stop in runs_of(labels != NOWHERE):
-        yield _track(hands, shape.shape, places.holders, labels, (start, stop))
+        track = _track(hands, shape.shape, places.holders, labels, (start, stop))
+        yield replace(track, taken=tuple(sorted(frame for frame in places.taken if start <= frame < stop)))
 
 
 @dataclass
@@ -77,6 +78,8 @@ class _Places:
     holders: list[Grip | Lying] = field(default_factory=list)
     _turns: list[tuple[int, int]] = field(default_factory=list)
     """Frames from which on another holder has it."""
+    taken: set[int] = field(default_factory=set)
+    """Those in which it is taken, or lifted as a caption has it."""
 
     def follow(self, moments: Sequence[Moment]) -> NDArray[np.int64]:
         """The holder of all frames, by its place in `holders`; NOWHERE where the thing is not seen. (T,)."""
@@ -90,7 +93,9 @@ class _Places:
             last = moment.stop
             if row is not None and moment.grip is not None and moment.grip.prop == self.shape.shape:
                 last = max(last, row[1]) if not goes_on else last
+                self.taken.add(row[0])
                 if not self._is_held():
+                    self._leave_far(moment.grip.hand, row[0])
                     self._turn(row[0], self._in_hand(moment.grip.hand))
             elif moment.skill is Skill.TOUCH:
                 self._reach(moment, goes_on)
@@ -119,8 +124,8 @@ class _Places:
         if takes:
             if self._holder() is None:
                 self._turn(self._since(), there)
-            elif self._is_far(named.hand, ends):
-                self._turn(max(ends - 1, 0), NOWHERE)
+            self.taken.add(ends)
+            self._leave_far(named.hand, ends)
             self._turn(ends, self._in_hand(named.hand))
         elif puts:
             if not held:
@@ -169,11 +174,12 @@ class _Places:
     def _is_held(self) -> bool:
         return isinstance(self._holder(), Grip)
 
-    def _is_far(self, hand: str, frame: int) -> bool:
-        """Whether it lies where the hand is not."""
+    def _leave_far(self, hand: str, frame: int) -> None:
+        """What lies where the hand that has it next is not is seen no more: it is another one."""
         holder = self._holder()
         palm = self.hands.palms[min(frame, len(self.hands.palms) - 1), 0 if hand == "left" else 1]
-        return isinstance(holder, Lying) and float(np.linalg.norm(holder.position - palm)) > NEAR
+        if isinstance(holder, Lying) and float(np.linalg.norm(holder.position - palm)) > NEAR:
+            self._turn(frame - 1, NOWHERE)
 
     def _in_hand(self, hand: str) -> int:
         """In one hand, hanging or lifted."""

@@ -81,6 +81,8 @@ class PropTrack:
     """(N,) shares of its size, 0 to 1 at 1.70 m."""
     lying: Flags | None = None
     """(N,) where it lies somewhere, and nobody holds it; None: nowhere."""
+    taken: tuple[int, ...] | None = None
+    """The frames in which it is taken, or lifted as a caption has it; None: its first."""
     own: PropShape | None = None
     """What it looks like, where that is no row of the table."""
 
@@ -93,6 +95,11 @@ class PropTrack:
     def stop(self) -> int:
         """Behind its last frame."""
         return self.start + len(self.positions)
+
+    @property
+    def lifts(self) -> tuple[int, ...]:
+        """The frames in which something is begun with it."""
+        return (self.start,) if self.taken is None else self.taken
 
     @property
     def held(self) -> tuple[tuple[int, int], ...]:

@@ -25,6 +25,7 @@ from motion_backend.rendering.film_entrance import Entrance
 from motion_backend.rendering.film_outlook import Outlook
 from motion_backend.rendering.film_set import FilmSet
 from motion_backend.rendering.film_sight import Appearances
+from motion_backend.rendering.motion_figures import lying_solids
 from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import Solid
 from motion_backend.rotations import Array
@@ -172,11 +173,20 @@ class _Director:
         found: list[tuple[tuple[tuple[bool, bool, bool], float], FilmShot]] = []
         for view in views[:TRIES]:
             scene = self.set.seen(view.camera, self.joints[start:stop])
-            look = bodies.look(scene, view.camera)
+            look = bodies.look([*scene, *self._standing_open(start, stop, view.camera)], view.camera)
             worth = view.score + look.appeal if any(look.rank) else look.shown
             found.append(((look.rank, worth), FilmShot(start, stop, view.camera, scene, framing.subject)))
         (rank, _), best = max(found, key=lambda one: one[0])
         return best, rank[0]
+
+    def _standing_open(self, start: int, stop: int, camera: Camera) -> list[Solid]:
+        """Doors and drawers as they are at first, amidst and at last in some frames, which hide what is behind."""
+        found: dict[tuple[str, bytes], Solid] = {}
+        for frame in (start, (start + stop) // 2, stop - 1):
+            there = [one for one in self.props if one.own is not None and one.start <= frame < one.stop]
+            for track, solid in zip(there, lying_solids(there, frame, camera, np.inf), strict=True):
+                found[track.prop, track.turns[frame - track.start].tobytes()] = solid
+        return [*found.values()]
 
     def _views(self, framing: Framing, before: FilmShot | None) -> list[_View]:
         """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet, with the

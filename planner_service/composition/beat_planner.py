@@ -16,7 +16,7 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.gainsaid import is_gainsaid
-from planner_service.composition.held_things import with_things
+from planner_service.composition.held_things import as_hands_hold, with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
@@ -73,7 +73,7 @@ def serve_beats(
         theme=theme,
         beats=_with_reasons(read, writer, acted),
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
-        keyframes=acted,
+        keyframes=as_hands_hold(acted),
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
         method=request.method,

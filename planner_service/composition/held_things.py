@@ -39,7 +39,8 @@ _FILLED: Final = frozenset(("glass", "drink", "cup"))
 _OWN: Final = frozenset(("his", "her", "their", "my", "reading"))
 _BUSY: Final = re.compile(
     r"\b(?:arms?|fists?|clap\w*|wav\w+|danc\w+|throw\w*|kneel\w*|jump\w*|shrug\w*|cheer\w*|stretch\w*|cry\w*|laugh\w*"
-    r"|behind|head|face|chin|mouth|toes|ankles|wrist|belly|chest|hips|pockets|palms|both hands|phone|piano|prone"
+    r"|behind|(?:holding|supporting|under) (?:the )?head|face|chin|mouth|toes|ankles|wrist|belly|chest|hips|pockets"
+    r"|palms|both hands|phone|piano|prone"
     r"|squat\w*|spin|point\w*|scratch\w*|pray\w*|shouting|punch\w*|kick\w*|skip|run)\b",
     re.IGNORECASE,
 )
@@ -103,15 +104,24 @@ class _Hands:
         held = dict(self.named)
         for number, thing in self.named.items():
             held |= dict.fromkeys(self._led(number, thing) if number in self.laid else (), thing)
-            held |= dict.fromkeys(self._following(number, thing) if self._goes_on(number) else (), thing)
-        found = [self._with(number, keyframe, held.get(number, "")) for number, keyframe in enumerate(self.keyframes)]
-        return [_by_right(number, found) for number in range(len(found))]
+            stays = self._goes_on(number) or self._is_used_next(number)
+            held |= dict.fromkeys(self._following(number, thing) if stays else (), thing)
+        return [
+            one.model_copy(update={"held": held[number]}) if number in held else one
+            for number, one in enumerate(self.keyframes)
+        ]
 
     def _goes_on(self, number: int) -> bool:
         """Whether a thing is in the hands after a keyframe: it was taken there, or before, and is not put down."""
         before = [one for one in self.named if one <= number and self.named[one] == self.named[number]]
         states = [one in self.kept for one in before if one in self.kept | self.laid]
         return bool(states) and states[-1]
+
+    def _is_used_next(self, number: int) -> bool:
+        """Whether what a hand is at is in the hands when it is named next: who "cuts an apple and eats it"."""
+        later = next((one for one in sorted(self.named) if one > number), number)
+        same = later > number and self.named[later] == self.named[number] and number not in self.laid
+        return same and self.keyframes[number].skill is Skill.TOUCH is not self.keyframes[later].skill
 
     def _following(self, number: int, thing: str) -> Sequence[int]:
         """The keyframes after one in which a thing stays in the hands."""
@@ -130,13 +140,22 @@ class _Hands:
         leads = number > 0 and connects(self.keyframes[number - 1]) and number - 1 not in self.named
         return (number - 1,) if leads and _are_free(self.keyframes[number - 1], thing, False) else ()
 
-    def _with(self, number: int, keyframe: PlannedKeyframe, thing: str) -> PlannedKeyframe:
-        walks = keyframe.skill is Skill.LOCO and number not in self.named and keyframe.mood is Emotion.NEUTRAL
-        shape = shown_as(thing) if thing else None
-        large = shape is not None and shape.way == "rim" and _LARGE in (shape.shape, *shape.instead)
-        plain = {"caption": usual(Skill.LOCO, keyframe.mood)} if _STOWED.search(keyframe.caption) else {}
-        update = {"held": thing} | plain | ({"caption": CARRIED} if walks and large else {})
-        return keyframe.model_copy(update=update) if thing else keyframe
+
+def as_hands_hold(keyframes: Sequence[PlannedKeyframe]) -> tuple[PlannedKeyframe, ...]:
+    """Keyframes with captions that go with what is in the hands: who walks with a tray takes both, and nobody has a
+    glass in hands that are behind the back."""
+    carried = [_as_carried(one) if one.held and one.skill is Skill.LOCO else one for one in keyframes]
+    return tuple(_by_right(number, carried) for number in range(len(carried)))
+
+
+def _as_carried(keyframe: PlannedKeyframe) -> PlannedKeyframe:
+    shape, plain = shown_as(keyframe.held), usual(Skill.LOCO, keyframe.mood)
+    large = shape is not None and shape.way == "rim" and _LARGE in (shape.shape, *shape.instead)
+    stowed = bool(_STOWED.search(keyframe.caption))
+    walks = keyframe.caption == plain or stowed or connects(keyframe)
+    if large and walks and keyframe.mood is Emotion.NEUTRAL:
+        return keyframe.model_copy(update={"caption": CARRIED})
+    return keyframe.model_copy(update={"caption": plain}) if stowed else keyframe
 
 
 def _by_right(number: int, keyframes: Sequence[PlannedKeyframe]) -> PlannedKeyframe:
@@ -191,12 +210,13 @@ def _may_hold(keyframe: PlannedKeyframe, thing: str, takes: bool) -> bool:
         return named is not None and any(grip.prop in (named.shape, *named.words.split()) for grip in row.props)
     if keyframe.skill is Skill.TOUCH:
         return bool(_HANDS_IT.search(keyframe.caption))
-    return takes and (keyframe.caption == CARRIED or _are_free(keyframe, thing, True))
+    freed = keyframe.caption == CARRIED or bool(_STOWED.search(keyframe.caption))
+    return takes and (freed or _are_free(keyframe, thing, True))
 
 
 def _are_free(keyframe: PlannedKeyframe, thing: str, reaching: bool) -> bool:
     """Whether a thing may stay in the hands in a keyframe; while `reaching`, one hand may be at something else."""
-    if keyframe.skill in RISINGS or keyframe.caption == CARRIED or _STOWED.search(keyframe.caption):
+    if keyframe.skill in RISINGS or keyframe.caption == CARRIED:
         return True
     shape = shown_as(thing)
     hangs = shape is not None and shape.way == "hanging"

@@ -50,6 +50,11 @@ _OBJECT: Final = re.compile(
     re.IGNORECASE,
 )
 """What a deed is done to, or with."""
+_WITH: Final = re.compile(
+    r"with (?:[\w'-]+ ){0,3}?(?P<what>[\w'-]+)(?: in (?:his|her|their|one|the|both) (?:\w+ )?(?:hands?|arms))?$",
+    re.IGNORECASE,
+)
+"""What somebody has in the hands meanwhile, and where else it is told to be is not seen."""
 _BARE: Final = re.compile(r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying)\b")
 """Captions in which nothing is in the hands; but a box."""
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
@@ -72,10 +77,10 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
     """The same of the keyframes that show it, with things that no hand is seen with, places where the body is not, and
     how often it does what it does once."""
     named = _held_words(keyframes)
+    told = unshown(clause, {one.piece[0] for one in keyframes})
     besides = [
-        text for text in unshown(clause, {one.piece[0] for one in keyframes})
-        if not text.startswith("with ") or named.isdisjoint(map(lemma_of, _words(text)))
-    ]  # fmt: skip
+        text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
+    ]
     more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes))
     return (*besides, *(text for text in more if not any(text in one for one in besides)))
 

@@ -28,7 +28,7 @@ def deeds(told: Told, motion: Motion, segments: Sequence[tuple[int, int]], role:
     """The frame at which the own deed of each keyframe begins, `segments` being the frames of keyframes: where the way
     to it ends, where something is taken in hand for it, and of who sleeps where they are down. Of a keyframe that is
     nothing but the way to another which the same words tell, it is that of the other."""
-    taken = [start for track in prop_tracks(motion, role) for start, _ in track.held]
+    taken = [frame for track in prop_tracks(motion, role) for frame in track.lifts]
     found = [_deed(motion, keyframe, segment, role, taken) for keyframe, segment in enumerate(segments)]
     for span in told.spans:
         for keyframe, following in reversed(list(pairwise(span.keyframes))):

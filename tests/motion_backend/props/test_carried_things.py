@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+import json
+from dataclasses import asdict, replace
 from functools import cache
 
 import numpy as np
@@ -10,7 +11,7 @@ import pytest
 from for_each import for_each
 
 from motion_backend import rotations
-from motion_backend.body.cast import InHand, Role, acted_captions, named_things
+from motion_backend.body.cast import InHand, Role, acted_captions, named_things, thing_from_dict
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Motion, Skill
 from motion_backend.props import PropTrack, held_in, prop_shape, prop_tracks, shown_as
@@ -135,6 +136,7 @@ def test_what_is_picked_up_lies_there_until_a_hand_comes_and_is_in_the_hand_from
     assert (track.start, track.stop) == (0, len(motion))
     ((taken, end),) = track.held
     assert end == len(motion)
+    assert track.lifts == (taken,)
     assert np.ptp(track.positions[: taken - 10], axis=0).max() == 0.0
     for frame in range(taken + 10, len(motion), 5):
         away = np.linalg.norm(corners(track, frame) - palm(motion, frame), axis=1).min()
@@ -199,6 +201,7 @@ def test_a_drink_that_is_carried_to_where_it_is_drunk_is_one_thing_all_the_way()
     for frame in range(0, len(motion), 7):
         assert np.linalg.norm(corners(track, frame) - palm(motion, frame), axis=1).min() < IN_HAND
     (mug,) = prop_tracks(motion, Role(captions=said))
+    assert track.lifts == mug.lifts == (mug.start,)
     inside = slice(mug.start + 12, mug.stop - 12)
     np.testing.assert_allclose(track.positions[inside], mug.positions[12:-12], atol=1e-9)
 
@@ -211,3 +214,9 @@ def test_hands_that_hold_something_else_hold_nothing_that_was_carried() -> None:
     found = prop_tracks(motion, Role(captions=said, things={0: InHand("beer")}))
     assert [track.prop for track in found] == ["bottle", "box"]
     assert found[0].stop <= found[1].start
+
+
+def test_things_in_the_hands_come_back_from_what_a_service_keeps_of_them() -> None:
+    done = acted(Skill.TOUCH, TAKES)
+    for thing in named(done, {0: "red cup", 1: "letter"}).things.values():
+        assert thing_from_dict(json.loads(json.dumps(asdict(thing)))) == thing

@@ -5,7 +5,7 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.composition.held_things import CARRIED, things_in, with_things
+from planner_service.composition.held_things import CARRIED, as_hands_hold, things_in, with_things
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import beats_of
 from planner_service.themes.sentence_parser import clauses_of_text
@@ -110,12 +110,22 @@ def test_what_is_only_told_to_be_held_is_held_in_what_is_done_meanwhile() -> Non
 
 def test_who_carries_what_takes_both_hands_walks_so_and_hands_are_not_behind_the_back_then() -> None:
     theme = "She takes the tray from the counter and goes to the table."
-    found = with_things(beats_of(theme), (at("kitchen counter", 0), to("table", 1)))
+    found = as_hands_hold(with_things(beats_of(theme), (at("kitchen counter", 0), to("table", 1))))
     assert [(one.held, one.caption) for one in found] == [("tray", TOUCH), ("tray", CARRIED)]
     theme = "She wanders with a candle."
-    (walk,) = with_things(beats_of(theme), (to("floor", 0, "walking slowly, hands behind back"),))
+    stowed = to("floor", 0, "walking slowly, hands behind back")
+    (walk,) = as_hands_hold(with_things(beats_of(theme), (stowed,)))
     assert walk.held == "candle"
     assert "behind" not in walk.caption
+    assert as_hands_hold((stowed,)) == (stowed,)
+
+
+def test_the_hand_that_drinks_is_the_hand_that_takes() -> None:
+    theme = "He takes a beer and drinks it."
+    left = at("table", 0, "pick up with the left hand")
+    found = as_hands_hold(with_things(beats_of(theme), (left, on("sofa", 1, SIP))))
+    assert found[0].caption == "pick up with the right hand"
+    assert as_hands_hold((left, on("sofa", 1, SIP)))[0] == left
 
 
 def test_a_theme_that_names_nothing_leaves_all_as_it_was() -> None:

@@ -54,3 +54,24 @@ def test_what_no_keyframe_shows_of_an_acted_beat_is_said(
     text: str, seen: PlannedKeyframe, left: tuple[str, ...]
 ) -> None:
     assert unseen(clauses_of_text(text)[0], [seen]) == left
+
+
+@for_each(
+    ("text", "held", "left"),
+    [
+        ("She packs a suitcase in a hurry.", "suitcase", ()),
+        ("She picks up her old letters.", "letter", ()),
+        ("She packs a suitcase in a hurry.", "hat", ("a suitcase",)),
+        ("She comes home with a suitcase.", "suitcase", ()),
+        ("She walks about with a glass of wine in her hand.", "wine", ()),
+        (
+            "He runs about with the toothbrush still in his mouth.",
+            "toothbrush",
+            ("with the toothbrush still in his mouth",),
+        ),
+        ("She dances on the table with a hat.", "hat", ("on the table",)),
+    ],
+)
+def test_what_is_held_by_name_is_seen_and_nothing_else_is(text: str, held: str, left: tuple[str, ...]) -> None:
+    seen = WALKING if "with" in text else HAND
+    assert unseen(clauses_of_text(text)[0], [seen.model_copy(update={"held": held})]) == left

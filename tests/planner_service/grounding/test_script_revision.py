@@ -55,3 +55,26 @@ def test_a_beat_is_only_stood_for_where_its_caption_was_changed_for_something_el
     skill: str, caption: str, reads: bool
 ) -> None:
     assert acted(changed(skill=skill, caption=caption)) == [skill == "sitdown", reads]
+
+
+@for_each(
+    ("words", "held"),
+    [
+        ({}, "novel"),
+        ({"held": "newspaper"}, "newspaper"),
+        ({"held": ""}, ""),
+        ({"caption": "clapping while seated"}, ""),
+        ({"caption": "drinking from a cup in the right hand", "held": "beer"}, "beer"),
+        ({"emotion": "sad"}, "novel"),
+    ],
+)
+def test_what_is_in_the_hands_stays_while_the_same_is_done_and_nobody_says_otherwise(
+    words: dict[str, str], held: str
+) -> None:
+    reads = SCRIPT.keyframes[-1].model_copy(update={"held": "novel"})
+    script = SCRIPT.model_copy(update={"keyframes": (*SCRIPT.keyframes[:-1], reads)})
+    rows = [{**one.model_dump(include={"skill", "emotion", "caption", "furniture"}), "index": index}
+            for index, one in enumerate(script.keyframes)]  # fmt: skip
+    rows[-1] |= words
+    found = rewritten(script, [EditedKeyframe.model_validate(row) for row in rows], home())
+    assert found.keyframes[-1].held == held

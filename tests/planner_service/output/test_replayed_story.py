@@ -150,3 +150,17 @@ def test_the_command_gives_another_name_and_the_same_words(tmp_path: Path) -> No
     assert again["text"] == made()["text"].replace("Ludwig", "Otto")
     assert again["title"] == made()["title"]
     assert again["character"] == made()["character"] | {"name": "Otto"}
+
+
+def test_what_is_in_the_hands_is_kept_and_may_be_changed(tmp_path: Path) -> None:
+    """Only seen: the body moves as it did."""
+    at = drinking(made())
+    assert made()["script"]["keyframes"][at]["held"] == "tea"
+    same = read(made(), tmp_path)
+    assert same.unchanged
+    story, planned = changed(tmp_path, at, held="beer")
+    assert planned.script.keyframes[at].held == "beer"
+    kept = story.kept(planned)
+    actions = pipeline().act(planned.request, planned.stage, kept)
+    assert [one.holds for one in actions][at] == "beer"
+    assert [one.spot for one in actions] == [one.spot for one in story.actions]
