@@ -208,4 +208,4 @@ def _tracks(piece: Placed, name: str, moving: Moving, shares: Array) -> Iterator
         places = np.array(moving.pivot) + share[:, None] * np.array(moving.way)
         turns = rotations.compose(upright, rotations.yaw_to_quat(moving.turn * share))
         there = np.ones(stop - start, dtype=bool)
-        yield PropTrack(called, start, piece.to_world(places), turns, np.ones(stop - start), there, shape)
+        yield PropTrack(called, start, piece.to_world(places), turns, np.ones(stop - start), there, (), shape)
