@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,10 @@ from scene_graphs.affordances.affordances import Spot
 
 Floats = NDArray[np.float32]
 FPS = 30
+
+
+Does = Literal["open", "close", "into", "on", "off"]
+"""What is done to a piece: opened, shut, opened for as long as a hand is at it, switched on or off."""
 
 
 class Skill(StrEnum):

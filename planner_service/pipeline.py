@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, Final, get_args
 
 from motion_backend.backends import DEFAULT_BACKEND, require_backend
-from motion_backend.body.cast import Look, Role, acted_captions, named_things
+from motion_backend.body.cast import InHand, Look, Role, Worked, acted_captions, named_things
 from motion_backend.director import Director, shares
 from motion_backend.metrics import story_metrics
 from motion_backend.metrics.story_figures import story_figures
@@ -23,6 +23,7 @@ from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Requ
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import Kept, act
 from planner_service.grounding.room_assignment import usual_furniture
+from planner_service.grounding.worked_pieces import worked_pieces
 from planner_service.library.library import Shelves
 from planner_service.llm.budget import Spent
 from planner_service.llm.client import for_story, spent_on
@@ -215,6 +216,7 @@ class Story:
             reason=figure.reason,
             seconds=figure.seconds,
             otherwise=(*done, *filter(None, (self.planned.stage.instead(figure.keyframe),))),
+            does=self.role.worked[figure.keyframe].does if figure.keyframe in self.role.worked else "",
         )
 
     @property
@@ -222,10 +224,10 @@ class Story:
         """The story as it is told, with all among its thoughts that the body was not seen doing."""
         return self.planned.told.with_unseen(lost_in_moving(self.planned.script.beats, self._shots))
 
-    @property
+    @cached_property
     def role(self) -> Role:
-        """Who is seen, what the face shows, and what the hands hold."""
-        return role_of(self.planned.character, self.actions, self.planned.script)
+        """Who is seen, what the face shows, and what the hands hold, open and switch."""
+        return role_of(self.planned.character, self.actions, self.planned.script, self.planned.home)
 
 
 @dataclass
@@ -325,15 +327,27 @@ def actor(request: StoryRequest, script: LongScript) -> Character:
     return cast_for(request.theme, called, request.seed, person.age)
 
 
-def role_of(character: Character, actions: Sequence[Action], script: LongScript) -> Role:
-    """Who is seen acting the actions of a script: the look, what face and hands show in each keyframe."""
+def role_of(character: Character, actions: Sequence[Action], script: LongScript, home: Home | None = None) -> Role:
+    """Who is seen acting the actions of a script: the look, what face and hands show in each keyframe, and what of a
+    home hands open, shut and switch.
+    """
     emotions = {action.keyframe: action.emotion for action in actions}
     asleep = frozenset(
         action.keyframe
         for action in actions
         if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
     )
-    return Role(Look.of(character), emotions, asleep, acted_captions(actions), named_things(actions))
+    worked = worked_pieces(actions, script, home) if home is not None else {}
+    return Role(Look.of(character), emotions, asleep, acted_captions(actions), _things(actions, worked), worked)
+
+
+def _things(actions: Sequence[Action], worked: Mapping[int, Worked]) -> dict[int, InHand]:
+    """What is named to be in the hands; out of what a hand reaches into, and not off its top."""
+    inside = {keyframe for keyframe, one in worked.items() if one.does == "into"}
+    return {
+        keyframe: replace(thing, on_top=thing.on_top and keyframe not in inside)
+        for keyframe, thing in named_things(actions).items()
+    }
 
 
 def _told_of(action: Action, script: LongScript) -> str:

@@ -13,8 +13,10 @@ from typing import Any, Final, Literal, get_args
 import numpy as np
 
 from motion_backend.body.mannequin_mesh import MAX_PROPORTION, MIN_PROPORTION, Proportions
-from motion_backend.motion import Action, Character, Emotion, Skill
+from motion_backend.motion import Action, Character, Does, Emotion, Skill
 from scene_graphs.data_tables import read_table, require_known, table
+from scene_graphs.errors import FieldPath
+from scene_graphs.layout import Placed, placed_from_row, placed_to_row
 
 Color = tuple[float, float, float]
 Age = Literal["child", "teen", "adult", "old"]
@@ -228,6 +230,19 @@ class InHand:
 
 
 @dataclass(frozen=True)
+class Worked:
+    """A piece of furniture that a hand opens, shuts or switches in a keyframe."""
+
+    does: Does
+    piece: Placed
+    """In the home; a door of a room, or the curtains of a window, as one too."""
+    at: tuple[float, float, float]
+    """The point of a surface that is reached for, in the world."""
+    hand: Literal["left", "right"] = "right"
+    """That reaches for it."""
+
+
+@dataclass(frozen=True)
 class Role:
     """Somebody seen acting: the look, what the face is to show, and what is in the hands."""
 
@@ -240,6 +255,8 @@ class Role:
     """What is acted, by keyframe: the hands are empty where it is not named."""
     things: Mapping[int, InHand] = field(default_factory=dict)
     """What is named to be in the hands, by keyframe; where it is not, captions say."""
+    worked: Mapping[int, Worked] = field(default_factory=dict)
+    """What hands open, shut or switch, by keyframe."""
 
 
 def acted_captions(actions: Sequence[Action]) -> dict[int, tuple[Skill, str]]:
@@ -251,6 +268,18 @@ def thing_from_dict(row: Mapping[str, Any]) -> InHand:
     """The inverse of `asdict`, once lists have come back for tuples."""
     at = tuple(row["at"]) if row["at"] is not None else None
     return InHand(row["thing"], row["hand"], at, row["on_top"], row["facing"])
+
+
+def worked_to_dict(worked: Worked) -> dict[str, Any]:
+    """Plain values for JSON."""
+    row = {"does": worked.does, "hand": worked.hand, "at": list(worked.at)}
+    return row | {"piece": placed_to_row(worked.piece)}
+
+
+def worked_from_dict(row: Mapping[str, Any]) -> Worked:
+    """The inverse of `worked_to_dict`."""
+    piece = placed_from_row(row["piece"], FieldPath(("worked",)))
+    return Worked(row["does"], piece, tuple(row["at"]), row["hand"])
 
 
 def named_things(actions: Sequence[Action]) -> dict[int, InHand]:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.formats.gltf_document import ARRAY_BUFFER, Animation, Document
 from motion_backend.motion import Motion
-from motion_backend.props import PropTrack, prop_shape
+from motion_backend.props import PropShape, PropTrack
 from motion_backend.rotations import Array
 from scene_graphs.json_fields import Json
 
@@ -27,7 +27,7 @@ def add_props(document: Document, animation: Animation, tracks: Iterable[PropTra
     for number, lane in enumerate(lanes(tracks)):
         name = lane[0].prop
         if name not in meshes:
-            meshes[name] = _add_mesh(document, name)
+            meshes[name] = _add_mesh(document, name, lane[0].shape)
         frames, positions, turns, sizes = prop_keys(lane, len(motion))
         node: Json = {
             "name": f"prop_{name}_{number}",
@@ -91,7 +91,7 @@ def bends(track: NDArray[np.floating]) -> NDArray[np.integer]:
     return np.flatnonzero(np.concatenate([[True], bent, [True]])) if len(track) > 1 else np.arange(1)
 
 
-def _add_mesh(document: Document, name: str) -> int:
+def _add_mesh(document: Document, name: str, shape: PropShape) -> int:
     """A primitive a colour; flat, since corners are not shared."""
     primitives = [
         {
@@ -99,14 +99,13 @@ def _add_mesh(document: Document, name: str) -> int:
             "indices": document.indices(np.arange(len(vertices)).reshape(-1, 3)),
             "material": document.material(name, color, ROUGHNESS),
         }
-        for color, vertices in of_one_color(name)
+        for color, vertices in of_one_color(shape)
     ]
     return document.add("meshes", {"name": name, "primitives": primitives})
 
 
-def of_one_color(name: str) -> Iterator[tuple[tuple[float, ...], NDArray[np.float32]]]:
-    """The triangles of a prop by colour: sRGB, and corners (3 F, 3), three a triangle."""
-    shape = prop_shape(name)
+def of_one_color(shape: PropShape) -> Iterator[tuple[tuple[float, ...], NDArray[np.float32]]]:
+    """The triangles of a prop by colour: sRGB (over 1 it shines), and corners (3 F, 3), three a triangle."""
     corners = shape.vertices.reshape(-1, 3, 3)
     colors, which = np.unique(shape.colors, axis=0, return_inverse=True)
     for number, color in enumerate(colors):

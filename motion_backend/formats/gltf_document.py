@@ -93,18 +93,22 @@ class Document:
         return self.accessor(flat.astype(np.uint16 if flat.max() < 0xFFFF else np.uint32), ELEMENT_ARRAY_BUFFER)
 
     def material(self, name: str, color: tuple[float, ...], roughness: float) -> int:
-        """A matt material of an sRGB colour with or without alpha; equal ones are shared."""
+        """A matt material of an sRGB colour with or without alpha, which shines where it is brighter than 1; equal ones
+        are shared."""
         key = (*(round(float(c), 4) for c in color), round(roughness, 3))
         if key not in self._materials:
             alpha = float(color[3]) if len(color) == 4 else 1.0
+            light = [min(_to_linear(float(c)), 1.0) for c in color[:3]]
             look: Json = {
                 "name": name,
                 "pbrMetallicRoughness": {
-                    "baseColorFactor": [*(_to_linear(float(c)) for c in color[:3]), alpha],
+                    "baseColorFactor": [*light, alpha],
                     "metallicFactor": 0.0,
                     "roughnessFactor": roughness,
                 },
             }
+            if max(color[:3]) > 1:
+                look["emissiveFactor"] = light
             if alpha < 1:
                 look |= {"alphaMode": "BLEND"}
             self._materials[key] = self.add("materials", look)

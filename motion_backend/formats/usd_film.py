@@ -180,7 +180,7 @@ def _add_props(stage: Any, motion: Motion, role: Role) -> None:
             place.Set(Gf.Vec3d(*position), frame)
             turn.Set(Gf.Quatf(w, x, y, z), frame)
             scale.Set(Gf.Vec3f(size), frame)
-        for look, (color, corners) in enumerate(of_one_color(name)):
+        for look, (color, corners) in enumerate(of_one_color(lane[0].shape)):
             faces = np.arange(len(corners)).reshape(-1, 3)
             _bind(stage, _mesh(stage, f"{path}/{_token(name)}_{look}", corners, faces), color, ROUGHNESS)
 
@@ -226,15 +226,17 @@ def _mesh(stage: Any, path: str, vertices: Floats, faces: NDArray[np.integer], n
 
 
 def _bind(stage: Any, mesh: Any, color: Sequence[float], roughness: float) -> None:
-    """A look of that colour (sRGB, with or without alpha), beside the mesh."""
+    """A look of that colour (sRGB, with or without alpha), beside the mesh; brighter than 1 it shines."""
     from pxr import Gf, Sdf, UsdShade
 
     path = f"{mesh.GetPath()}/Look"
-    red, green, blue = (float(v) for v in _linear(np.asarray(color[:3], dtype=np.float64)))
+    red, green, blue = (float(v) for v in np.minimum(_linear(np.asarray(color[:3], dtype=np.float64)), 1.0))
     material = UsdShade.Material.Define(stage, path)
     shader = UsdShade.Shader.Define(stage, f"{path}/Surface")
     shader.CreateIdAttr("UsdPreviewSurface")
     shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(red, green, blue))
+    if max(color[:3]) > 1:
+        shader.CreateInput("emissiveColor", Sdf.ValueTypeNames.Color3f).Set(Gf.Vec3f(red, green, blue))
     shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(float(roughness))
     shader.CreateInput("opacity", Sdf.ValueTypeNames.Float).Set(float(color[3]) if len(color) > 3 else 1.0)
     material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")

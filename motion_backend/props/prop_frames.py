@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from motion_backend.body.cast import InHand, Role
 from motion_backend.motion import Motion, Skill
+from motion_backend.props.prop_shapes import PropShape, prop_shape
 from motion_backend.props.prop_table import Called, Grip, Held, held_in, shown_as
 from motion_backend.rotations import Array
 
@@ -81,6 +83,13 @@ class PropTrack:
     """(N,) where it lies somewhere, and nobody holds it; None: nowhere."""
     taken: tuple[int, ...] | None = None
     """The frames in which it is taken, or lifted as a caption has it; None: its first."""
+    own: PropShape | None = None
+    """What it looks like, where that is no row of the table."""
+
+    @property
+    def shape(self) -> PropShape:
+        """What it looks like."""
+        return self.own or prop_shape(self.prop)
 
     @property
     def stop(self) -> int:
@@ -104,12 +113,19 @@ class PropTrack:
         if self.lying is None or first < 0 or last > len(self.positions):
             return False
         whole = self.lying[first:last] & (self.sizes[first:last] == 1.0)
-        return bool(whole.all()) and not np.ptp(self.positions[first:last], axis=0).any()
+        still = [not np.ptp(one[first:last], axis=0).any() for one in (self.positions, self.turns)]
+        return bool(whole.all()) and all(still)
 
     def is_held(self, frame: int) -> bool:
         """Whether it is in the hands at a frame."""
         now = frame - self.start
         return 0 <= now < len(self.positions) and not (self.lying is not None and bool(self.lying[now]))
+
+
+def spans_of(motion: Motion) -> Iterator[tuple[int, int]]:
+    """First frame and stop frame of every keyframe."""
+    starts = np.flatnonzero(np.diff(motion.actions, prepend=motion.actions[:1] - 1)).tolist()
+    return zip(starts, [*starts[1:], len(motion)], strict=True)
 
 
 def runs_of(flags: Flags) -> list[tuple[int, int]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from typing import Final
@@ -31,7 +32,7 @@ class PropShape:
     normals: Floats
     """(3 F, 3) unit."""
     colors: Floats
-    """(F, 3) sRGB."""
+    """(F, 3) sRGB; what is brighter than 1 shines by itself."""
 
     @property
     def faces(self) -> NDArray[np.uint32]:
@@ -48,11 +49,15 @@ class PropShape:
 @cache
 def prop_shape(name: str) -> PropShape:
     """The shape of a prop of data/props.toml. KeyError."""
+    return painted_shape([(part.color, _built(part)) for part in prop_table().shapes[name]])
+
+
+def painted_shape(painted: Iterable[tuple[tuple[float, float, float], Shape]]) -> PropShape:
+    """One of several, each of one colour."""
     corners, colors = [], []
-    for part in prop_table().shapes[name]:
-        vertices, faces = _built(part)
+    for color, (vertices, faces) in painted:
         corners.append(vertices[faces])  # (F, 3, 3)
-        colors.append(np.tile(part.color, (len(faces), 1)))
+        colors.append(np.tile(color, (len(faces), 1)))
     sides = np.concatenate(corners)
     across = np.cross(sides[:, 1] - sides[:, 0], sides[:, 2] - sides[:, 0])
     wide = np.linalg.norm(across, axis=1) > 1e-12

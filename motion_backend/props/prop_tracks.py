@@ -2,7 +2,8 @@
 
 A prop is there while the hands are where its caption has them: lifted, and near to where they are for most of the
 keyframe. It grows in the hand as that comes, and is gone before the hand is down. What is named, and taken, put down or
-carried besides, is of carried_things.py. The same motion and role give the same.
+carried besides, is of carried_things.py; what hands open and switch is of fixture_tracks.py. The same motion and role
+give the same.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ import numpy as np
 from motion_backend.body.cast import Role
 from motion_backend.motion import Motion
 from motion_backend.props.carried_things import carried_things
-from motion_backend.props.prop_frames import Flags, Moment, PropTrack, growth, runs_of
+from motion_backend.props.fixture_tracks import fixture_tracks
+from motion_backend.props.prop_frames import Flags, Moment, PropTrack, growth, runs_of, spans_of
 from motion_backend.props.prop_hands import Hands
-from motion_backend.props.prop_shapes import prop_shape
 from motion_backend.props.prop_table import Held, shown_as
 from motion_backend.rotations import Array
 
@@ -40,10 +41,16 @@ GAP: Final = 0.4
 
 def prop_tracks(motion: Motion, role: Role) -> tuple[PropTrack, ...]:
     """All props of a motion, in the order in which they come; frames count from its first."""
-    moments = [one for span in _spans(motion) if (one := Moment.of(motion, role, *span)) is not None]
-    if not moments:
+    moments = [one for span in spans_of(motion) if (one := Moment.of(motion, role, *span)) is not None]
+    if not (moments or role.worked):
         return ()
     hands = Hands.of(motion)
+    found = [*_in_hand(hands, moments), *fixture_tracks(hands, motion, role)]
+    return tuple(sorted(found, key=lambda track: track.start))
+
+
+def _in_hand(hands: Hands, moments: Sequence[Moment]) -> list[PropTrack]:
+    """What is in the hands, or was put down by them."""
     carried = _carried(moments)
     rows = [(one, (one.held, _carries(one, carried))) for one in moments if one.held is not None]
     there = dict(_presences(hands, rows))
@@ -53,7 +60,7 @@ def prop_tracks(motion: Motion, role: Role) -> tuple[PropTrack, ...]:
         own = [(grip, when) for held, when in mine for grip in held.props if grip.prop == shape]
         others = [(held.hands, when) for (held, one), when in there.items() if one != thing]
         found += carried_things(hands, [one for one in moments if one.thing == thing], own, others)
-    return tuple(sorted(found, key=lambda track: track.start))
+    return found
 
 
 def _carried(moments: Sequence[Moment]) -> dict[str, str]:
@@ -67,12 +74,6 @@ def _carries(moment: Moment, carried: Mapping[str, str]) -> str:
     """The thing that its caption holds, where it is carried besides; else ""."""
     grip = moment.grip
     return moment.thing if grip is not None and grip.prop == carried.get(moment.thing) else ""
-
-
-def _spans(motion: Motion) -> Iterator[tuple[int, int]]:
-    """First frame and stop frame of every keyframe."""
-    starts = np.flatnonzero(np.diff(motion.actions, prepend=motion.actions[:1] - 1)).tolist()
-    return zip(starts, [*starts[1:], len(motion)], strict=True)
 
 
 def _presences(hands: Hands, moments: Sequence[tuple[Moment, Key]]) -> Iterator[tuple[Key, Flags]]:
@@ -136,7 +137,7 @@ def prop_points(tracks: Sequence[PropTrack], frame: int) -> Array:
     for track in tracks:
         if track.is_held(frame):
             now = frame - track.start
-            shape = prop_shape(track.prop)
+            shape = track.shape
             points.append(
                 shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))[0].astype(np.float64)
             )

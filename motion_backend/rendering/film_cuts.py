@@ -222,8 +222,8 @@ class _Finder:
 
     def _holding(self, start: int, stop: int, seconds: float) -> Iterator[Framing]:
         """Frames in which something is in some hands for so long."""
-        for track in self.props:
-            first, last = max(start, track.start), min(stop, track.stop)
+        for track, (since, until) in ((one, held) for one in self.props for held in one.held):
+            first, last = max(start, since), min(stop, until)
             if last - first < seconds * self.motion.fps:
                 continue
             there = track.positions[first - track.start : last - track.start]

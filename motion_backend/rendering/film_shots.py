@@ -25,6 +25,7 @@ from motion_backend.rendering.film_entrance import Entrance
 from motion_backend.rendering.film_outlook import Outlook
 from motion_backend.rendering.film_set import FilmSet
 from motion_backend.rendering.film_sight import Appearances
+from motion_backend.rendering.motion_figures import lying_solids
 from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import Solid
 from motion_backend.rotations import Array
@@ -190,8 +191,18 @@ class _Director:
     def _looked(self, framing: Framing, bodies: Appearances, view: _View) -> _Looked:
         """A view of which a small picture was looked at."""
         scene = self.set.seen(view.camera, self.joints[framing.start : framing.stop])
-        look = bodies.look(scene, view.camera)
+        opened = self._standing_open(framing.start, framing.stop, view.camera)
+        look = bodies.look([*scene, *opened], view.camera)
         return _Looked((look.rank, view.score + look.appeal if any(look.rank) else look.shown), view, scene)
+
+    def _standing_open(self, start: int, stop: int, camera: Camera) -> list[Solid]:
+        """Doors and drawers as they are at first, amidst and at last in some frames, which hide what is behind."""
+        found: dict[tuple[str, bytes], Solid] = {}
+        for frame in (start, (start + stop) // 2, stop - 1):
+            there = [one for one in self.props if one.own is not None and one.start <= frame < one.stop]
+            for track, solid in zip(there, lying_solids(there, frame, camera, np.inf), strict=True):
+                found[track.prop, track.turns[frame - track.start].tobytes()] = solid
+        return [*found.values()]
 
     def _views(self, framing: Framing, before: FilmShot | None) -> list[_View]:
         """Cameras that have all of the body in the picture, best first: near, of its face, hands and feet, with the

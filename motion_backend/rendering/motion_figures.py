@@ -14,7 +14,7 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.body.character_mesh import build_character
 from motion_backend.body.face_track import face_track
 from motion_backend.body.skinning import SkinnedMesh, skin
-from motion_backend.props import PropTrack, prop_shape, prop_tracks
+from motion_backend.props import PropTrack, prop_tracks
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid
 from motion_backend.walls import Side
@@ -74,7 +74,7 @@ class Acting:
                 continue
             away = np.linalg.norm(track.positions[now] - self.motion.root_positions[frame])
             if track.is_held(frame) or away < REACH:
-                shape = prop_shape(track.prop)
+                shape = track.shape
                 moved = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
                 found.append(_Triangles(*moved, shape.faces, shape.colors))
         return found
@@ -84,10 +84,10 @@ def lying_solids(tracks: Sequence[PropTrack], frame: int, camera: Camera, reach:
     """What lies within reach of a camera's target at a frame."""
     found = []
     for track in tracks:
-        now, shape = frame - track.start, prop_shape(track.prop)
+        now, shape = frame - track.start, track.shape
         if np.linalg.norm(track.positions[now] - np.asarray(camera.target)) < reach:
-            vertices, _ = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
-            found.append(Solid(vertices, shape.faces, shape.colors))
+            vertices, normals = shape.moved(track.positions[now], track.turns[now], float(track.sizes[now]))
+            found.append(Solid(vertices, shape.faces, shape.colors, normals))
     return found
 
 

@@ -24,6 +24,7 @@ from planner_service.composition.request import RULES, Record, Request
 from planner_service.composition.rest_place import BY_A_WALL
 from planner_service.composition.unshown import unseen
 from planner_service.composition.whereabouts import is_held
+from planner_service.composition.worked_fixtures import with_worked
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe, Retrieved, ShortScript
@@ -68,7 +69,7 @@ def serve_beats(
         )
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
-    acted = with_things(read, acted)
+    acted = with_worked(read, with_things(read, acted))
     return LongScript(
         theme=theme,
         beats=_with_reasons(read, writer, acted),

@@ -7,7 +7,7 @@ Scripts name neither, since these are no furniture: what the theme says, or a ca
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -15,8 +15,11 @@ import numpy as np
 from motion_backend.walls import Side
 from planner_service.themes.opening_words import Kind
 from scene_graphs.affordances.affordances import Spot
+from scene_graphs.boxes import Part
 from scene_graphs.home import HANDLE_HEIGHT, Home, Wall
-from scene_graphs.layout import Opening, wrap
+from scene_graphs.layout import Opening, Placed, wrap
+from scene_graphs.meshes.interior_mesh import CURTAIN_ABOVE, CURTAIN_BELOW, CURTAIN_OUT, LEAF_OUT
+from scene_graphs.meshes.moving_parts import CURTAINS, ROOM_DOOR
 from scene_graphs.navigation.path_planner import Walkable
 
 Point = tuple[float, float]
@@ -95,6 +98,32 @@ def entry(home: Home, walkable: Walkable, room: int) -> tuple[float, float, floa
     """Where somebody stands and looks, [x, z, yaw], who has just come into a room by its outer door, else into any."""
     found = min(_places(home, walkable, "door", room, _ENTERED), key=lambda one: one[:2], default=None)
     return (*found[2].standing, found[2].inward) if found is not None else None
+
+
+def opening_piece(home: Home, is_door: bool, at: Point) -> Placed | None:
+    """The leaf of the door to the outside, or the curtains of the window, that is nearest to [x, z], as a piece that
+    faces into the room; None where there is none."""
+    found = [
+        (wall, side, opening)
+        for wall in home.walls if (side := Side.of(wall, home)) is not None and side.room is not None
+        for opening in _openings(home, wall, "door" if is_door else "window")
+    ]  # fmt: skip
+    if not found:
+        return None
+    wall, side, opening = min(found, key=lambda one: float(np.hypot(*np.subtract(np.mean(one[2].segment, axis=0), at))))
+    (x, z), width = np.mean(opening.segment, axis=0), float(np.hypot(*np.subtract(*opening.segment)))
+    yaw, name = float(np.arctan2(-side.outward[0], -side.outward[1])), f"{side.room}/{home.walls.index(wall)}"
+    tall = min(opening.top, wall.height - 0.02)
+    if not is_door:
+        low, top = opening.bottom - CURTAIN_BELOW, tall + CURTAIN_ABOVE
+        return Placed(f"{name} curtains", CURTAINS, (x, low, z), (width, top - low, CURTAIN_OUT), yaw)
+    door = Placed(f"{name} door", ROOM_DOOR, (x, 0.0, z), (width, tall, 2 * LEAF_OUT[1]), yaw)
+    handle_x, handle_z = wall.handle(opening)
+    grip = float(door.to_local((handle_x, 0.0, handle_z))[0])
+    leaf = Part("panel", (-width / 2, 0.005, -LEAF_OUT[1]), (width / 2, tall, -LEAF_OUT[0]))
+    begin, end = (grip - 0.065, HANDLE_HEIGHT - 0.015), (grip + 0.065, HANDLE_HEIGHT + 0.015)
+    handle = Part("pole", (*begin, -LEAF_OUT[0]), (*end, _HANDLE + 0.005))
+    return replace(door, shape=(leaf, handle))
 
 
 def _places(

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 from pydantic import Field
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import RISINGS, Skill
+from motion_backend.motion import RISINGS, Does, Skill
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.composition.caption_senses import is_shown
 from planner_service.composition.deed_lexicon import deed_of, pieces_told
@@ -58,6 +58,12 @@ def _held(one: EditedKeyframe, old: PlannedKeyframe | None) -> str:
     """What is in the hands as somebody wants it: where they do not say, as it was while the same is done."""
     stays = old is not None and (old.skill, old.caption) == (one.skill, one.caption)
     return one.held if "held" in one.model_fields_set or old is None or not stays else old.held
+
+
+def _does(one: EditedKeyframe, old: PlannedKeyframe | None) -> Literal[Does, ""]:
+    """What becomes of the piece, as somebody wants it: where they do not say, as it was while the same is done."""
+    stays = old is not None and (old.skill, old.caption) == (one.skill, one.caption)
+    return one.does if "does" in one.model_fields_set or old is None or not stays else old.does
 
 
 @dataclass(frozen=True)
@@ -174,7 +180,7 @@ class _Reader:
         chosen = self._object(number, one, old)
         same = old is not None and chosen == old.object_id
         if old is not None and same and (old.skill, old.emotion, old.caption) == (one.skill, one.emotion, one.caption):
-            return old.model_copy(update={"held": _held(one, old)})
+            return old.model_copy(update={"held": _held(one, old), "does": _does(one, old)})
         return PlannedKeyframe(
             skill=one.skill,
             emotion=one.emotion,
@@ -186,6 +192,7 @@ class _Reader:
             object_id=chosen,
             already=old.already if old else False,
             held=_held(one, old),
+            does=_does(one, old),
         )
 
     def _note(self, number: int, field: str, said: str) -> None:

@@ -125,6 +125,7 @@ def _keyframes(script: LongScript) -> list[Json]:
             "caption": keyframe.caption,
             "furniture": keyframe.furniture,
             "held": keyframe.held,
+            "does": keyframe.does,
             "object_id": None,
             "room": keyframe.room,
             "already": keyframe.already,

@@ -21,7 +21,7 @@ from sqlalchemy import Connection
 from sqlalchemy.exc import InterfaceError, OperationalError
 
 from motion_backend.backend_protocol import BodyState
-from motion_backend.body.cast import Role
+from motion_backend.body.cast import Role, worked_to_dict
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.director import Director, segments_of
 from motion_backend.formats.glb_film import film_glb
@@ -139,7 +139,7 @@ class OpenStory:
     @property
     def role(self) -> Role:
         """Who is seen, and what the face shows."""
-        return role_of(actor(self.request, self.stage.script), self.actions, self.stage.script)
+        return role_of(actor(self.request, self.stage.script), self.actions, self.stage.script, self.stage.home)
 
     def script(self) -> LongScript:
         """The long script, as planning left it."""
@@ -289,12 +289,13 @@ class Maker:
         rows = [serialization.action_to_dict(action) for action in actions]
         summary = {"count": len(actions), "objects": [a.object_id for a in actions]}
         summary["captions"] = [action.caption for action in actions]
-        role = role_of(story.request.acted_by, actions, stage.script)
+        role = role_of(story.request.acted_by, actions, stage.script, stage.home)
         director = self._director(story.request.backend) if origin else None
         taken = reused_segments(story, origin, rows, director) if director else []
         own = [_own(one, index, len(actions)) for index, one in enumerate(taken)]
         summary |= {"asleep": sorted(role.asleep), "reused": len(own)}
         summary["things"] = [asdict(thing) | {"keyframe": index} for index, thing in role.things.items()]
+        summary["worked"] = [worked_to_dict(one) | {"keyframe": index} for index, one in role.worked.items()]
         if origin:
             summary["take"] = take_number(story.store.engine, story.id)
         return _to_bytes({"actions": rows}), summary, own

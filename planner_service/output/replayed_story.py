@@ -156,4 +156,4 @@ def _stage(row: Json) -> Furnished:
 
 
 def _said(keyframe: Keyframe) -> tuple[str, ...]:
-    return keyframe.skill, keyframe.emotion, keyframe.caption, keyframe.furniture, keyframe.held
+    return keyframe.skill, keyframe.emotion, keyframe.caption, keyframe.furniture, keyframe.held, keyframe.does

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Final, Literal
 
-from motion_backend.motion import RISINGS, Emotion, Skill
+from motion_backend.motion import RISINGS, Does, Emotion, Skill
 from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
 from planner_service.scripts.still_things import still_in
@@ -19,7 +19,7 @@ IN_ITS_PLACE: Final = "the body is seen doing something else in its place"
 AT_THE: Final = "at the"
 IN_PLACE_OF: Final = " in place of the "
 """Words of a note on hands that are at another piece than the theme names, before and after that."""
-ACTED: Final = "acted: the body is seen doing it; no furniture moves"
+ACTED: Final = "acted: the body is seen doing it"
 STANDS: Final = f"something stands for it: {IN_ITS_PLACE}"
 NOT_SHOWN: Final = "not shown: words that the body does not show"
 LEFT_UNDONE: Final = "left undone: the theme says it is not done"
@@ -69,6 +69,8 @@ class Shot:
     """How long it is on the screen."""
     otherwise: tuple[str, ...] = ()
     """What the body did otherwise than its caption says, since the place does not allow it: words of `Motion.notes`."""
+    does: Literal[Does, ""] = ""
+    """What is seen to become of the piece under the hand."""
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,8 @@ class Outcome:
     """Why it is not acted; empty where it is."""
     stood_for: bool = False
     """Whether the film shows only something that stands for it."""
+    seen: frozenset[Does] = frozenset()
+    """What is seen to become of pieces under the hands meanwhile."""
 
     @property
     def acted(self) -> bool:
@@ -89,7 +93,7 @@ class Outcome:
     @property
     def unshown(self) -> tuple[str, ...]:
         """What of its words is not seen where it is acted: what the planner says, and what becomes of things."""
-        return (*self.beat.unshown, *(still_in(self.beat.text) if self.acted else ()))
+        return (*self.beat.unshown, *(still_in(self.beat.text, self.seen) if self.acted else ()))
 
     def to_dict(self) -> Json:
         """Plain values for JSON."""
@@ -210,7 +214,8 @@ def _outcome(beat: Beat, index: int, shots: Sequence[Shot]) -> Outcome:
     where = next((words for shot in shots if index in shot.beats for words in shot.otherwise
                   if (IN_PLACE_OF in words or not planned) and _concerns(words, beat)), "")  # fmt: skip
     place = f"{IN_ITS_PLACE}, {where}" if where else IN_ITS_PLACE
-    return Outcome(seen, place if stood_for else why, stood_for)
+    done = frozenset(shot.does for shot in shots if index in shot.beats and shot.reached is not False and shot.does)
+    return Outcome(seen, place if stood_for else why, stood_for, done)
 
 
 def planned_beats(script: LongScript) -> ActedBeats:
@@ -220,7 +225,7 @@ def planned_beats(script: LongScript) -> ActedBeats:
 
 def shot_of(keyframe: PlannedKeyframe) -> Shot:
     """A keyframe that is still to be moved."""
-    return Shot(beats_in(keyframe.beat, keyframe.also), keyframe.mood, connects(keyframe))
+    return Shot(beats_in(keyframe.beat, keyframe.also), keyframe.mood, connects(keyframe), does=keyframe.does)
 
 
 def beats_in(beat: int | None, also: Sequence[int]) -> tuple[int, ...]:

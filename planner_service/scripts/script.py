@@ -10,7 +10,7 @@ from pydantic import AliasChoices, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticKnownError
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import Emotion, Skill, skills_named
+from motion_backend.motion import Does, Emotion, Skill, skills_named
 from planner_service.themes.opening_words import spelt_out
 
 EMOTIONS: Final[tuple[Emotion, ...]] = tuple(Emotion)
@@ -72,6 +72,9 @@ class Keyframe(_ScriptPart):
     """A furniture word, with an instance number when a script uses two of a kind ("wardrobe 2"), or "floor"."""
     held: Line = Field("", max_length=MAX_THING_LENGTH, exclude_if=lambda thing: not thing)
     """What is in the hands, or is reached for, by its name: "letter"; empty where only the caption says."""
+    does: Literal[Does, ""] = ""
+    """What becomes of the piece under the hand: it is opened, shut, opened for as long as the hand is there ("into"),
+    switched on or off; empty where nothing of it moves."""
 
     @property
     def mood(self) -> Emotion:

@@ -1,9 +1,12 @@
-"""Things that stay as they are when a hand is laid on them: what is told of doors and lamps, and is not seen."""
+"""What is told of doors, lamps and screens under the hands, and is not seen: that they open, shut, go on or off."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from typing import Final
+
+from motion_backend.motion import Does
 
 MOVED: Final = re.compile(
     r"\b(?:open|clos|shut|slam|bang|draw|pull|unlock|lock)\w*\b(?:(?!\b(?:and|then)\b)[^,;.])*?"
@@ -12,6 +15,13 @@ MOVED: Final = re.compile(
     re.IGNORECASE,
 )
 """Words of a beat in which a thing moves."""
+REACHED_INTO: Final = re.compile(
+    r"\b(?:look|peer|peek|glanc|star|gaz|rummag|search|dig|dug|hunt|root|reach|t[ao]k|get|got|fetch|grab|find|found|put"
+    r"|plac|stor|hid)\w*\b(?:(?!\b(?:and|then)\b)[^,;.])*?\b(?:in|into|inside|through|from|out of) "
+    r"(?:the|an?|his|her|their|my|its) (?:\w+ )??(cabinet|cupboard|wardrobe|closet|fridge|refrigerator|drawer)\b",
+    re.IGNORECASE,
+)
+"""Words of a beat in which a hand goes into what is shut."""
 QUENCHED: Final = re.compile(
     r"\b(?:(?:turn|switch|click|flick|shut)\w*\b[^,;.]*?\b(?:off|out|down)\b|(?:blow|blew|blown|snuff|put)\w* out\b"
     r"|(?:blow|blew|snuff|put)\w* (?:(?:the|a|an|his|her|their|my|every|each|all) )?(?:\w+ ){1,2}out\b"
@@ -19,12 +29,30 @@ QUENCHED: Final = re.compile(
     re.IGNORECASE,
 )
 """Words of a beat in which something goes off or out."""
+LIT: Final = re.compile(
+    r"\b(?:turn|switch|click|flick|flip|put|snap)\w*\b[^,;.]*?\bon\b"
+    r"|\b(?:light(?:s|ed|ing)?|lit|ignit\w+) (?:the|an?|his|her|their|my) ",
+    re.IGNORECASE,
+)
+_SWITCHED: Final = re.compile(
+    r"\b(?:lamps?|lights?|tv|telly|television|screen|stove|hob|gas|oven|tap|faucet|radio|stereo|music|kettle|fan|heating"
+    r"|heater|computer|laptop|candles?|fire|match|lantern)\b",
+    re.IGNORECASE,
+)
+"""Words of a beat in which something goes on, and what."""
 
 
-def still_in(text: str) -> tuple[str, ...]:
-    """What of a beat's words is not seen though a hand is: "that the door moves", "that it goes off"."""
-    moved = MOVED.search(text)
+def still_in(text: str, seen: Collection[Does] = ()) -> tuple[str, ...]:
+    """What of a beat's words is not seen though a hand is: "that the door moves", "that it goes off"; `seen` is what
+    becomes of pieces while it is acted."""
+    moved, inner = MOVED.search(text), REACHED_INTO.search(text)
     if moved:
-        return (f"that the {moved[1].lower()}{moved[2]} move{'' if moved[2] else 's'}",)
+        known = not {"open", "close"}.isdisjoint(seen)
+        return () if known else (f"that the {moved[1].lower()}{moved[2]} move{'' if moved[2] else 's'}",)
     quenched = QUENCHED.search(text)
-    return (f"that it goes {'down' if quenched[0].endswith('down') else 'off'}",) if quenched else ()
+    if quenched:
+        known = "off" in seen
+        return () if known else (f"that it goes {'down' if quenched[0].endswith('down') else 'off'}",)
+    if LIT.search(text) and _SWITCHED.search(text):
+        return () if "on" in seen else ("that it goes on",)
+    return (f"that the {inner[1].lower()} opens",) if inner and not {"into", "open"} & {*seen} else ()

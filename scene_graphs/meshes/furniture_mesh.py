@@ -16,7 +16,7 @@ from scene_graphs.layout import Placed
 from scene_graphs.meshes import materials as m
 from scene_graphs.meshes.interior_mesh import floor_meshes, wall_meshes
 from scene_graphs.meshes.materials import Canvas, Material
-from scene_graphs.meshes.mesh_details import books, doors, drawers, foliage, painting, stalks
+from scene_graphs.meshes.mesh_details import books, doors, drawers, foliage, painting, screen_face, shade, stalks
 from scene_graphs.meshes.mesh_primitives import Mesh, block, cylinder, turned
 
 
@@ -136,11 +136,7 @@ def _board(canvas: Canvas, part: Part) -> None:
 
 
 def _shade(canvas: Canvas, part: Part) -> None:
-    canvas.add(m.LAMPSHADE, cylinder(part.low, part.high, 18, 0.72))
-
-
-def _flat_shade(canvas: Canvas, part: Part) -> None:
-    canvas.add(m.LAMPSHADE, cylinder(part.low, part.high, 20, 1.25))
+    canvas.add(m.LAMPSHADE, shade(form_of(canvas.placed.category), part))
 
 
 def _lamp_foot(canvas: Canvas, part: Part) -> None:
@@ -177,9 +173,9 @@ def _leaves(canvas: Canvas, part: Part) -> None:
 
 
 def _screen(canvas: Canvas, part: Part) -> None:
-    (x0, y0, z0), (x1, y1, z1) = part.low, part.high
+    x1, y1, z1 = part.high
     canvas.add(m.BLACK, block(part.low, (x1, y1, z1 - 0.004), 0.006))
-    canvas.add(m.SCREEN, block((x0 + 0.02, y0 + 0.03, z0), (x1 - 0.02, y1 - 0.02, z1)))
+    canvas.add(m.SCREEN, block(*screen_face(part)))
 
 
 def _picture(canvas: Canvas, part: Part) -> None:
@@ -283,7 +279,6 @@ _STYLES: dict[tuple[str, str], Style] = {
     ("tall_storage", "panel"): _carcass,
     ("open_shelf", "shelf"): _board,
     ("desk", "shelf"): _board,
-    ("ceiling_lamp", "shade"): _flat_shade,
     ("screen", "screen"): _screen,
     ("screen", "foot"): _metal_block,
     ("screen", "pole"): _metal_block,

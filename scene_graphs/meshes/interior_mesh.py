@@ -45,8 +45,12 @@ _PAINTS = (
 _CUT = Material("cut wall", (0.36, 0.34, 0.33, 1.0), 0.9)
 _BASE = Material("base", (0.80, 0.78, 0.75, 1.0), 0.9)
 _FRAME = Material("door frame", (0.97, 0.96, 0.94, 1.0), 0.6)
-_LEAF = Material("door leaf", (0.80, 0.66, 0.50, 1.0), 0.6)
-_CURTAINS = tuple(m.FABRICS[index] for index in (4, 0, 2))
+LEAF = Material("door leaf", (0.80, 0.66, 0.50, 1.0), 0.6)
+LEAF_OUT = (0.012, 0.05)
+"""Between which distances outwards the leaf of a door is (metres)."""
+CURTAIN_BELOW, CURTAIN_ABOVE, CURTAIN_OUT = 0.06, 0.11, 0.05
+"""How far curtains hang below their window and over it, and before the wall (metres)."""
+CURTAIN_FABRICS = tuple(m.FABRICS[index] for index in (4, 0, 2))
 
 
 def floor_meshes(home: Home) -> Iterator[Mesh]:
@@ -165,9 +169,9 @@ def _fill(home: Home, side: _Side, opening: Opening, name: str, room: int) -> It
         ],
     )
     if low > 0.1:
-        yield from _window(side, (left, right), (low, high), name, _CURTAINS[room % len(_CURTAINS)])
+        yield from _window(side, (left, right), (low, high), name, CURTAIN_FABRICS[room % len(CURTAIN_FABRICS)])
     elif not home.leads_on(opening):
-        yield _mesh(f"door leaf {name}", _LEAF, [side.box((left, right), (0.005, high), (0.012, 0.05))])
+        yield _mesh(f"door leaf {name}", LEAF, [side.box((left, right), (0.005, high), LEAF_OUT)])
         grip, y = right - HANDLE_IN, HANDLE_HEIGHT
         handle = [side.box((grip - 0.065, grip + 0.065), (y - 0.01, y + 0.01), (-0.045, -0.03))]
         handle.append(side.box((grip + 0.045, grip + 0.065), (y - 0.015, y + 0.015), (-0.045, 0.012)))
@@ -193,8 +197,9 @@ def _window(
     folds = []
     for begin in (max(left - 0.26, 0.0), min(right - 0.02, side.length - 0.284)):
         for fold in range(4):
-            x, depth = begin + 0.07 * fold, -0.05 + 0.016 * (fold % 2)
-            folds.append(side.box((x, x + 0.074), (low - 0.06, high + 0.11), (depth - 0.014, depth + 0.006)))
+            x, depth = begin + 0.07 * fold, -CURTAIN_OUT + 0.016 * (fold % 2)
+            heights = (low - CURTAIN_BELOW, high + CURTAIN_ABOVE)
+            folds.append(side.box((x, x + 0.074), heights, (depth - 0.014, depth + 0.006)))
     yield _mesh(f"window curtain {name}", fabric, folds)
 
 

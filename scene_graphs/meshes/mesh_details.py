@@ -7,6 +7,7 @@ Doors and drawers of storage have gaps between them and handles on them.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from zlib import crc32
 
 import numpy as np
@@ -109,47 +110,96 @@ def _generator(placed: Placed, height: float) -> np.random.Generator:
     return np.random.default_rng(crc32(f"{placed.category}{placed.size}{placed.id}{height:.2f}".encode()))
 
 
-HANDLE = 0.012
-"""How far a handle stands out, in metres."""
+FRONT, HANDLE = 0.016, 0.012
+"""How thick the board of a door or drawer is, and how far its handle stands out, in metres."""
+
+
+@dataclass(frozen=True)
+class Front:
+    """A door or a drawer of a closed body: a board between two corners, in the frame of its piece."""
+
+    low: Point3
+    high: Point3
+    slides: bool
+    """Whether it is pulled out; else it swings."""
+    hinge: float
+    """The x of the side about which it swings."""
+    handle: Shape
+
+    @property
+    def board(self) -> Shape:
+        """Without its handle."""
+        return block(self.low, self.high, 0.006)
 
 
 def drawers(canvas: Canvas, part: Part) -> None:
     """A body with a front a drawer, each with a handle."""
-    rows = max(1, round(part.size[1] / 0.2))
-    columns = 2 if part.size[0] > 0.8 else 1
-    _fronts(canvas, part, rows, columns, knob=True)
+    _draw(canvas, part)
 
 
 def doors(canvas: Canvas, part: Part) -> None:
     """Doors half a metre wide; low pieces have knobs, tall ones bars for handles."""
-    category, width = canvas.placed.category, part.size[0]
-    if form_of(category) == "tall_storage":
-        _fronts(canvas, part, 2 if category == "refrigerator" else 1, max(1, round(width / 0.5)), knob=False)
-    else:
-        _fronts(canvas, part, 3 if category == "dresser" else 1, max(2, round(width / 0.55)), knob=True)
+    _draw(canvas, part)
 
 
-def _fronts(canvas: Canvas, part: Part, rows: int, columns: int, *, knob: bool) -> None:
+def _draw(canvas: Canvas, part: Part) -> None:
     """A body and its fronts, which reach to the part's own front; handles stand out a little."""
-    material = m.FRONTS.get(canvas.placed.category) or canvas.pick(m.CARCASSES)
-    (x0, y0, z0), (x1, y1, z1) = part.low, part.high
-    face = z1 - 0.016
-    canvas.add(material, block((x0, y0, z0), (x1, y1, face)))
+    material = front_material(canvas.placed)
+    canvas.add(material, block(part.low, (part.high[0], part.high[1], part.high[2] - FRONT)))
+    for front in fronts(canvas.placed.category, part):
+        canvas.add(material, front.board)
+        canvas.add(m.METAL, front.handle)
+
+
+def front_material(placed: Placed) -> Material:
+    """Of the doors and drawers of a piece, and of the body behind them."""
+    return m.FRONTS.get(placed.category) or m.pick(m.CARCASSES, placed.category, placed.size)
+
+
+def fronts(category: str, part: Part) -> list[Front]:
+    """The doors or drawers of a part that is a closed body; none of one that is not."""
+    width, tall = part.size[0], form_of(category) == "tall_storage"
+    match part.role:
+        case "drawers":
+            rows, columns = max(1, round(part.size[1] / 0.2)), 2 if width > 0.8 else 1
+        case "doors" if tall:
+            rows, columns = 2 if category == "refrigerator" else 1, max(1, round(width / 0.5))
+        case "doors":
+            rows, columns = 3 if category == "dresser" else 1, max(2, round(width / 0.55))
+        case _:
+            return []
+    slides = part.role == "drawers" or category == "dresser"
+    (x0, y0, _), (x1, y1, z1) = part.low, part.high
     xs, ys = np.linspace(x0, x1, columns + 1), np.linspace(y0, y1, rows + 1)
+    found = []
     for column in range(columns):
         for row in range(rows):
-            low = (float(xs[column]) + 0.005, float(ys[row]) + 0.005, face)
+            low = (float(xs[column]) + 0.005, float(ys[row]) + 0.005, z1 - FRONT)
             high = (float(xs[column + 1]) - 0.005, float(ys[row + 1]) - 0.005, z1)
-            canvas.add(material, block(low, high, 0.006))
-            canvas.add(m.METAL, _handle(low, high, column, columns, knob=knob))
+            opens_right = column % 2 == 0 and columns > 1
+            handle = _bar(low, high, opens_right) if tall else _knob(low, high)
+            found.append(Front(low, high, slides, low[0] if opens_right else high[0], handle))
+    return found
 
 
-def _handle(low: Point3, high: Point3, column: int, columns: int, *, knob: bool) -> Shape:
-    z0, z1 = high[2], high[2] + HANDLE
-    if knob:
-        x, y = (low[0] + high[0]) / 2, high[1] - min(0.06, 0.35 * (high[1] - low[1]))
-        return block((x - 0.05, y - 0.006, z0), (x + 0.05, y + 0.006, z1))
-    opens_right = column % 2 == 0 and columns > 1
+def _knob(low: Point3, high: Point3) -> Shape:
+    x, y = (low[0] + high[0]) / 2, high[1] - min(0.06, 0.35 * (high[1] - low[1]))
+    return block((x - 0.05, y - 0.006, high[2]), (x + 0.05, y + 0.006, high[2] + HANDLE))
+
+
+def _bar(low: Point3, high: Point3, opens_right: bool) -> Shape:
     x = high[0] - 0.04 if opens_right else low[0] + 0.04
     y = low[1] + min(0.5 * (high[1] - low[1]), 1.0)
-    return block((x - 0.008, y - 0.12, z0), (x + 0.008, y + 0.12, z1))
+    return block((x - 0.008, y - 0.12, high[2]), (x + 0.008, y + 0.12, high[2] + HANDLE))
+
+
+def shade(form: str, part: Part) -> Shape:
+    """The shade of a lamp: flat and wider below under a ceiling, else narrower above."""
+    segments, taper = (20, 1.25) if form == "ceiling_lamp" else (18, 0.72)
+    return cylinder(part.low, part.high, segments, taper)
+
+
+def screen_face(part: Part) -> tuple[Point3, Point3]:
+    """Two corners of what lights up of a screen, within its rim."""
+    (x0, y0, z0), (x1, y1, z1) = part.low, part.high
+    return (x0 + 0.02, y0 + 0.03, z0), (x1 - 0.02, y1 - 0.02, z1)

@@ -12,7 +12,7 @@ interface Shown {
 }
 
 const OUTCOMES: Readonly<Record<Outcome, Shown>> = {
-  acted: { mark: "✓", word: "Acted", meaning: "the body is seen doing it; no furniture moves" },
+  acted: { mark: "✓", word: "Acted", meaning: "the body is seen doing it" },
   stands: { mark: "≈", word: "Stands for it", meaning: "the body is seen doing something else in its place" },
   otherwise: { mark: "↷", word: "Done otherwise", meaning: "it is done in another way than its caption says, since the body or the place allows no more" },
   missing: { mark: "–", word: "Not shown", meaning: "words of the theme that nothing in the film shows" },

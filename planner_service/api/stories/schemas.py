@@ -19,7 +19,7 @@ from pydantic_core import CoreSchema, PydanticKnownError
 
 from motion_backend.backends import UnknownBackendError, offered_backends, require_backend
 from motion_backend.body.cast import cast
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import Does, Emotion, Skill
 from motion_backend.skeleton import MAX_HEIGHT, MIN_HEIGHT
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, Method
 from planner_service.grounding.script_revision import EditedKeyframe
@@ -237,6 +237,7 @@ class KeyframeShown(BaseModel):
     caption: str
     furniture: str
     held: str = Field("", description="What is named to be in the hands, or reached for; empty: the caption says.")
+    does: Literal[Does, ""] = Field("", description="What becomes of the piece under the hand; empty: nothing.")
     object_id: str | None = Field(description='"room_index/object_id" in the home.')
     room: str | None = Field(description="Where the body is; before a home is found, what is asked for.")
     start: int | None = Field(description="First frame.")

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Any, Final
 
-from motion_backend.body.cast import Look, Role, thing_from_dict
+from motion_backend.body.cast import Look, Role, thing_from_dict, worked_from_dict
 from motion_backend.motion import FPS, Character, Emotion, Motion, Skill, join
 from planner_service.jobs.story_stages import STAGES, read_segments
 from planner_service.narration.told import Told
@@ -68,7 +68,10 @@ def story_shown(record: Record) -> Json:
     frames = segments[-1]["end"] if segments else 0
     complete = bool(made.get("count")) and len(segments) == made.get("count")
     keyframes = _keyframes(made, segments)
-    beats, shots = [Beat.model_validate(row) for row in made.get("beats", [])], _shots(keyframes, segments)
+    beats, shots = (
+        [Beat.model_validate(row) for row in made.get("beats", [])],
+        _shots(keyframes, segments, made.get("worked")),
+    )
     shown = {
         "method": record.method,
         "character": made.get("character", record.character),
@@ -102,10 +105,11 @@ def _keyframes(made: Json, segments: list[Json]) -> list[Json]:
     return rows
 
 
-def _shots(keyframes: list[Json], segments: list[Json]) -> list[Shot]:
+def _shots(keyframes: list[Json], segments: list[Json], worked: list[Json] | None) -> list[Shot]:
     """What of every keyframe says whether its beats are acted, as far as that is known."""
     reasons = {segment["keyframe"]: segment.get("reason", "") for segment in segments}
     otherwise = {segment["keyframe"]: _words(segment.get("otherwise")) for segment in segments}
+    does = {row["keyframe"]: row["does"] for row in worked} if worked is not None else None
     return [
         Shot(
             beats_in(row["beat"], row["also"]),
@@ -114,6 +118,7 @@ def _shots(keyframes: list[Json], segments: list[Json]) -> list[Shot]:
             row["reached"],
             reasons.get(row["index"], ""),
             otherwise=otherwise.get(row["index"], ()),
+            does=row.get("does", "") if does is None else does.get(row["index"], ""),
         )
         for row in keyframes
     ]
@@ -150,7 +155,8 @@ def role_in(record: Record) -> Role:
     rows = zip(made.get("keyframes", ()), said, strict=False)
     captions = {row["index"]: (Skill(row["skill"]), caption) for row, caption in rows}
     things = {row["keyframe"]: thing_from_dict(row) for row in made.get("things", ())}
-    return Role(look, emotions, frozenset(made.get("asleep", ())), captions, things)
+    worked = {row["keyframe"]: worked_from_dict(row) for row in made.get("worked", ())}
+    return Role(look, emotions, frozenset(made.get("asleep", ())), captions, things, worked)
 
 
 def _links(story_id: str) -> dict[str, str]:
