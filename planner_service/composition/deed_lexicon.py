@@ -311,7 +311,9 @@ def typical_of(text: str) -> list[str]:
     before = 0
     for at in range(len(words)):
         name = " ".join(words[at : at + 2]) if " ".join(words[at : at + 2]) in typical else words[at]
-        if name in typical and (before or not known.prepositions & set(words[1:at]) - _THROUGH):
+        # "washes the dishes in the kitchen"
+        within = "in" in words[1:at] and any(map(is_noun, words[1 : words.index("in")]))
+        if name in typical and not within and (before or not known.prepositions & set(words[1:at]) - _THROUGH):
             end = at + len(name.split())
             listed = not before or all(
                 word in known.marks | known.adverbs | {",", "and", "then"} for word in words[before:at]

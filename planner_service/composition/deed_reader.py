@@ -215,7 +215,9 @@ class DeedReader:
             return found
         pieces = (*found.pieces, *(likeliest_pieces(likely) if likely is not None else ()))
         bearing = [one for one in dict.fromkeys(pieces) if not is_another(clause, one)] or list(found.pieces)
-        return replace(found, pieces=tuple(sorted(bearing, key=lambda one: -at(likely, one) if likely else 0)))
+        washes = any(one.startswith("wash") for one in found.row.captions)  # at a sink, where there is one
+        order = sorted(bearing, key=lambda one: -at(likely, one) if likely else 0)
+        return replace(found, pieces=tuple(sorted(order, key=lambda one: washes and "sink" not in one)))
 
     def _deed(self, clause: Clause, about: str) -> Deed | None:
         told, likely, never = deed_of(clause, about), self.likely(clause), self._never(clause)

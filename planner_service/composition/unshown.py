@@ -55,7 +55,9 @@ _WITH: Final = re.compile(
     re.IGNORECASE,
 )
 """What somebody has in the hands meanwhile, and where else it is told to be is not seen."""
-_BARE: Final = re.compile(r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|dressing)\b")
+_BARE: Final = re.compile(
+    r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|dressing)\b"
+)
 """Captions in which nothing is in the hands; but a box."""
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
 """Of captions that do it several times."""

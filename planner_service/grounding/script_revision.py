@@ -100,8 +100,17 @@ def _mended(script: LongScript, planned: Sequence[PlannedKeyframe]) -> LongScrip
     keyframes, repairs = repair(planned)
     if not keyframes:
         raise RevisionError([Fault(0, "skill", f"nothing is left that a body can do: {'; '.join(repairs)}")])
+    keyframes = tuple(_without_its_beat(one, script.keyframes, keyframes) for one in keyframes)
     beats = tuple(_judged_anew(beat, index, script.keyframes, keyframes) for index, beat in enumerate(script.beats))
     return script.model_copy(update={"beats": beats, "keyframes": keyframes, "repairs": repairs})
+
+
+def _without_its_beat(
+    one: PlannedKeyframe, before: Sequence[PlannedKeyframe], now: Sequence[PlannedKeyframe]
+) -> PlannedKeyframe:
+    """A keyframe that only led to what was taken out, told by itself: who still gets up, but dances no more."""
+    taken_out = one.beat is not None and connects(one) and _doing(one.beat, before) and not _doing(one.beat, now)
+    return one.model_copy(update={"beat": None}) if taken_out else one
 
 
 def _judged_anew(beat: Beat, index: int, before: Sequence[PlannedKeyframe], now: Sequence[PlannedKeyframe]) -> Beat:

@@ -13,6 +13,8 @@ import numpy as np
 
 from motion_backend.motion import RISINGS, Skill
 from planner_service.narration.narrative_voice import Voice, require_blanks
+from planner_service.scripts.caption_fallbacks import hashed_words
+from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.themes.lexicon import past
 from scene_graphs.data_tables import read_table, require_known, table
@@ -167,10 +169,11 @@ class Wording:
         self, indices: tuple[int, ...], keyframe: PlannedKeyframe, leads: bool, stays: bool, in_full: bool
     ) -> Phrase:
         index, mood, known = indices[-1], keyframe.mood, templates()
+        caption = _told_as(keyframe)
         manners: tuple[str, ...] = ()
         walks, sits = keyframe.skill == Skill.LOCO, keyframe.skill == Skill.SITDOWN
         if walks:
-            walk = known.walks.get(keyframe.caption, known.walks_in_mood[mood])
+            walk = known.walks.get(caption, known.walks_in_mood[mood])
             ways = walk.about if keyframe.on_floor else walk.to
         elif keyframe.skill in RESTS:
             usual = (known.sits_in_mood if sits else known.lies_in_mood)[mood]
@@ -178,7 +181,7 @@ class Wording:
             ways = known.rests_again if stays else known.turns[keyframe.skill] if turns else usual
             ways = known.rests_on[keyframe.skill] if self._goes_on(keyframe) else ways
             ways = known.rests_already[keyframe.skill] if keyframe.already else ways
-            manners = (known.sits if sits else known.lies).get(keyframe.caption, ())
+            manners = (known.sits if sits else known.lies).get(caption, ())
         elif keyframe.skill == Skill.TOUCH:
             ways = touches(keyframe)
         else:
@@ -249,6 +252,15 @@ class Wording:
 
 def _on(the: str) -> str:
     return "in" if the.endswith(_IN) else "on"
+
+
+def _told_as(keyframe: PlannedKeyframe) -> str:
+    """The caption that a keyframe is told as: its own, or the known one that is nearest in its letters, "crying" as
+    "crying while seated, face in both hands"."""
+    if keyframe.caption in captions()[keyframe.skill.value]:
+        return keyframe.caption
+    nearest, score = hashed_words().nearest(keyframe.skill, keyframe.caption)
+    return nearest if score >= hashed_words().least else keyframe.caption
 
 
 def touches(keyframe: Keyframe) -> tuple[str, ...]:

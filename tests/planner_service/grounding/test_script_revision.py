@@ -78,3 +78,26 @@ def test_what_is_in_the_hands_stays_while_the_same_is_done_and_nobody_says_other
     rows[-1] |= words
     found = rewritten(script, [EditedKeyframe.model_validate(row) for row in rows], home())
     assert found.keyframes[-1].held == held
+
+
+def test_what_is_taken_out_is_no_more_acted_though_somebody_still_gets_up_for_it() -> None:
+    script = made(
+        "She sits down on the sofa, dances and looks out.",
+        [beat("sits down on the sofa"), beat("dances"), beat("looks out")],
+        [
+            frame("sitdown", "sitting still", "sofa", 0),
+            frame("standup", "stand up", "sofa", 1),
+            frame("loco", "dancing steps, arms swinging", "floor", 1),
+            frame("loco", "stand still", "floor", 2),
+        ],
+    )
+    kept = [
+        EditedKeyframe.model_validate(
+            {**one.model_dump(include={"skill", "emotion", "caption", "furniture"}), "index": at}
+        )
+        for at, one in enumerate(script.keyframes)
+        if at != 2
+    ]
+    left = rewritten(script, kept, home())
+    assert acted(left) == [True, False, True]
+    assert all(1 not in (one.beat, *one.also) for one in left.keyframes)
