@@ -78,3 +78,19 @@ def test_what_is_in_the_hands_stays_while_the_same_is_done_and_nobody_says_other
     rows[-1] |= words
     found = rewritten(script, [EditedKeyframe.model_validate(row) for row in rows], home())
     assert found.keyframes[-1].held == held
+
+
+@for_each(
+    ("words", "does"),
+    [({}, "open"), ({"does": "close"}, "close"), ({"does": ""}, ""), ({"caption": "clapping while seated"}, "")],
+)
+def test_what_becomes_of_the_piece_stays_while_the_same_is_done_and_nobody_says_otherwise(
+    words: dict[str, str], does: str
+) -> None:
+    opens = SCRIPT.keyframes[-1].model_copy(update={"does": "open"})
+    script = SCRIPT.model_copy(update={"keyframes": (*SCRIPT.keyframes[:-1], opens)})
+    rows = [{**one.model_dump(include={"skill", "emotion", "caption", "furniture"}), "index": index}
+            for index, one in enumerate(script.keyframes)]  # fmt: skip
+    rows[-1] |= words
+    found = rewritten(script, [EditedKeyframe.model_validate(row) for row in rows], home())
+    assert found.keyframes[-1].does == does
