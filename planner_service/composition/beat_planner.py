@@ -16,7 +16,7 @@ from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.gainsaid import is_gainsaid
-from planner_service.composition.held_things import as_hands_hold, with_things
+from planner_service.composition.held_things import as_hands_hold, is_handled, with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, UNSHOWN, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
 from planner_service.composition.request import RULES, Record, Request
@@ -73,7 +73,7 @@ def serve_beats(
         theme=theme,
         beats=_with_reasons(read, writer, acted),
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
-        keyframes=as_hands_hold(acted),
+        keyframes=acted if planned else as_hands_hold(acted),
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
         method=request.method,
@@ -168,7 +168,8 @@ def _besides(
         return unseen(read.clause, own)
     walks = deed is not None and deed.skill is Skill.LOCO
     own = [one for one in own if walks or not connects(one)] or own
-    if deed is not None and not writer.reader.is_shown(read.clause, deed, own, index in writer.linked):
+    handled = is_handled(read.clause, own)
+    if deed is not None and not (handled or writer.reader.is_shown(read.clause, deed, own, index in writer.linked)):
         return (read.text,)
     if read.beat.kind != "deed":
         return ()

@@ -34,6 +34,7 @@ _MEANT: Final = frozenset(("it", "them", "one"))
 _NAMED_AFTER: Final = frozenset(("with", "up", "down", "out", "off", "away", "back", "over"))
 """Words after which a deed still names what it is done to, or with: "picks up a letter"."""
 _LISTS: Final = frozenset((",", "and"))
+_LAID: Final = frozenset(("put", "set", "lay", "place"))
 _FILLED: Final = frozenset(("glass", "drink", "cup"))
 """What is named by what is in it: "a glass of wine"."""
 _OWN: Final = frozenset(("his", "her", "their", "my", "reading"))
@@ -72,9 +73,9 @@ class _Hands:
         keyframe = self.keyframes[number]
         told = things_in(clause, keyframe) or [self.last] * bool(_MEANT & set(clause.lemmas[1:3]))
         thing = told[min(nth, len(told) - 1)] if told else ""
+        self.last = thing or mentioned(clause) or self.last
         if not thing:
             return
-        self.last = thing
         takes = clause.verb in theme_words()["taking_verbs"] | theme_words()["bringing_verbs"]
         if number in self.named or not _may_hold(keyframe, thing, takes):
             return
@@ -141,6 +142,13 @@ class _Hands:
         return (number - 1,) if leads and _are_free(self.keyframes[number - 1], thing, False) else ()
 
 
+def is_handled(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> bool:
+    """Whether a hand is seen taking the thing that a clause says is taken, or putting it down."""
+    taken = clause.verb in theme_words()["taking_verbs"] | _LAID and clause.lemmas[1:2] != ("on",)
+    named = things_in(clause)
+    return taken and any(one.skill is Skill.TOUCH and one.held in named for one in keyframes)
+
+
 def as_hands_hold(keyframes: Sequence[PlannedKeyframe]) -> tuple[PlannedKeyframe, ...]:
     """Keyframes with captions that go with what is in the hands: who walks with a tray takes both, and nobody has a
     glass in hands that are behind the back."""
@@ -175,7 +183,7 @@ def with_things(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) 
         own = [one for one in (keyframe.beat, *keyframe.also) if one is not None]
         latest = max(own, default=-1)
         for beat in [one for one in range(latest) if one not in told and one not in own]:
-            hands.last = next(iter(things_in(read[beat].clause)), hands.last)
+            hands.last = mentioned(read[beat].clause) or hands.last
             told.add(beat)
         if connects(keyframe) and keyframe.skill is not Skill.LOCO:
             continue
@@ -239,6 +247,11 @@ def things_in(clause: Clause, keyframe: PlannedKeyframe | None = None) -> list[s
         if thing and (not before or before in _NAMED_AFTER or fits):
             found.append(thing)
     return found
+
+
+def mentioned(clause: Clause) -> str:
+    """The first thing with a shape that a clause names at all, or ""."""
+    return next((thing for _, words in _phrases(clause) if (thing := _last_thing(words))), "")
 
 
 def _phrases(clause: Clause) -> list[tuple[str, list[str]]]:

@@ -76,7 +76,7 @@ NO_DEED: Final = "it is no deed"
 UNSHOWN: Final = "none of the captions shows it"
 BESIDE: Final = "the body does something else meanwhile, on its feet"
 """Why what would be done sitting is not, beside that: "irons a shirt while listening to the radio"."""
-HELD: Final = "the hands are empty"
+HELD: Final = "what is held or worn stays as it is"
 """Why what is only held, or is in somebody's own clothes, is not acted."""
 EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 """Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""

@@ -121,7 +121,9 @@ class ReplayedStory:
         for _, start, stop, first, last in SequenceMatcher(None, before, now, autojunk=False).get_opcodes():
             index |= dict(zip(range(first, last), range(start, stop), strict=False))
         return [
-            EditedKeyframe(index=index.get(number), **one.model_dump(include=set(Keyframe.model_fields)))
+            EditedKeyframe(
+                **one.model_dump(include=set(Keyframe.model_fields)) | {"index": index.get(number), "held": one.held}
+            )
             for number, one in enumerate(self.keyframes)
         ]
 

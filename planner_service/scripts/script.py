@@ -70,7 +70,7 @@ class Keyframe(_ScriptPart):
     caption: Line = Field(min_length=1, max_length=200)
     furniture: Line = Field("floor", validation_alias=AliasChoices("furniture", "furnitures"), max_length=60)
     """A furniture word, with an instance number when a script uses two of a kind ("wardrobe 2"), or "floor"."""
-    held: Line = Field("", max_length=MAX_THING_LENGTH)
+    held: Line = Field("", max_length=MAX_THING_LENGTH, exclude_if=lambda thing: not thing)
     """What is in the hands, or is reached for, by its name: "letter"; empty where only the caption says."""
     does: Literal[Does, ""] = ""
     """What becomes of the piece under the hand: it is opened, shut, opened for as long as the hand is there ("into"),

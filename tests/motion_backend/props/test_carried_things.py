@@ -16,6 +16,8 @@ from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.motion import Motion, Skill
 from motion_backend.props import PropTrack, held_in, prop_shape, prop_tracks, shown_as
 from motion_backend.props.prop_table import prop_table, things_named
+from motion_backend.rendering.motion_figures import Acting, lying_solids
+from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 from planner_service.evaluation.trials import Performance, perform
@@ -220,3 +222,18 @@ def test_things_in_the_hands_come_back_from_what_a_service_keeps_of_them() -> No
     done = acted(Skill.TOUCH, TAKES)
     for thing in named(done, {0: "red cup", 1: "letter"}).things.values():
         assert thing_from_dict(json.loads(json.dumps(asdict(thing)))) == thing
+
+
+def test_what_lies_still_can_be_drawn_once_with_the_home_instead_of_with_the_body() -> None:
+    done = acted(Skill.TOUCH, TAKES)
+    acting = Acting.of(done.motion, named(done, {1: "plate"}))
+    (track,) = acting.props
+    assert acting.lying(0, 15) == [track]
+    assert acting.lying(0, len(done.motion)) == []
+    (whole,), (bare,) = acting.solids([5]), acting.solids([5], but=acting.lying(0, 15))
+    assert len(whole.faces) - len(bare.faces) == len(prop_shape("plate").faces)
+    x, y, z = track.positions[5].tolist()
+    near, far = (Camera((at, 3.0, z + 2.0), (at, y, z)) for at in (x, 90.0))
+    (drawn,) = lying_solids([track], 5, near)
+    np.testing.assert_allclose(drawn.vertices, whole.vertices[len(bare.vertices) :], atol=1e-6)
+    assert lying_solids([track], 5, far) == []

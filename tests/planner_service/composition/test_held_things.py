@@ -5,7 +5,7 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.composition.held_things import CARRIED, as_hands_hold, things_in, with_things
+from planner_service.composition.held_things import CARRIED, as_hands_hold, is_handled, things_in, with_things
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import beats_of
 from planner_service.themes.sentence_parser import clauses_of_text
@@ -79,6 +79,22 @@ def test_what_is_put_down_is_in_the_hand_on_the_way_there_and_no_longer() -> Non
 def test_it_is_what_was_named_before() -> None:
     theme = "He picks up a letter, carries it to the desk and opens it."
     assert held(theme, to("table", 0), at("table", 0), to("desk", 1), at("desk", 2)) == ["", *["letter"] * 3]
+
+
+def test_it_is_also_what_was_only_looked_for() -> None:
+    theme = "She looks for her keys, finds them and puts them on the table."
+    found = held(theme, at("desk", 0), at("shelf", 1), to("table", 2), at("table", 2))
+    assert found == ["", "key", "key", "key"]
+
+
+def test_who_takes_a_thing_that_is_named_is_seen_taking_it() -> None:
+    (clause,) = clauses_of_text("He takes a knife.")
+    taken = at("table", 0).model_copy(update={"held": "knife"})
+    assert is_handled(clause, [taken])
+    assert not is_handled(clause, [at("table", 0)])
+    assert not is_handled(clause, [taken.model_copy(update={"held": "fork"})])
+    assert not is_handled(clauses_of_text("He sharpens a knife.")[0], [taken])
+    assert not is_handled(clauses_of_text("He puts on a hat.")[0], [taken.model_copy(update={"held": "hat"})])
 
 
 def test_a_thing_goes_when_the_hands_are_needed() -> None:

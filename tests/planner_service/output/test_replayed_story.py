@@ -158,6 +158,9 @@ def test_what_is_in_the_hands_is_kept_and_may_be_changed(tmp_path: Path) -> None
     assert made()["script"]["keyframes"][at]["held"] == "tea"
     same = read(made(), tmp_path)
     assert same.unchanged
+    _, bare = changed(tmp_path, at, held="")
+    assert bare.script.keyframes[at].held == ""
+    assert "held" not in bare.script.keyframes[at].model_dump()
     story, planned = changed(tmp_path, at, held="beer")
     assert planned.script.keyframes[at].held == "beer"
     kept = story.kept(planned)
