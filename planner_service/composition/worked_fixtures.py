@@ -70,7 +70,7 @@ def done_to(clause: Clause, piece: str, last: str = "") -> Literal[Does, ""]:
     meant = bool(_MEANT & rest) and bool(last)
     switched = _switched(clause.verb, rest)
     if switched:
-        named = bool(table["switched_things"] & rest) or any(map(_is_lit, pieces))
+        named = bool(table["switched_things"] & {*clause.lemmas}) or any(map(_is_lit, pieces))
         return switched if named or (meant and last in _SWITCHED) else ""
     if clause.verb in ("draw", "pull") and "curtain" in rest:
         return "open" if rest & _APART else "close"
@@ -85,6 +85,8 @@ def done_to(clause: Clause, piece: str, last: str = "") -> Literal[Does, ""]:
 def _switched(verb: str, rest: frozenset[str]) -> Literal[Does, ""]:
     """Whether a verb and the words after it switch something on or off."""
     table = theme_words()
+    if not verb or verb in table["switched_things"]:  # "Lamp on."
+        return "on" if "on" in rest else "off" if rest & {"off", "out"} else ""
     if verb in table["quenching_verbs"] or (verb in table["switching_verbs"] | {"shut"} and rest & {"off", "out"}):
         return "off"
     return "on" if verb in table["lighting_verbs"] or (verb in table["switching_verbs"] and "on" in rest) else ""
