@@ -80,7 +80,6 @@ def test_what_is_in_the_hands_stays_while_the_same_is_done_and_nobody_says_other
     assert found.keyframes[-1].held == held
 
 
-<<<<<<< HEAD
 def test_what_is_taken_out_is_no_more_acted_though_somebody_still_gets_up_for_it() -> None:
     script = made(
         "She sits down on the sofa, dances and looks out.",
@@ -102,7 +101,8 @@ def test_what_is_taken_out_is_no_more_acted_though_somebody_still_gets_up_for_it
     left = rewritten(script, kept, home())
     assert acted(left) == [True, False, True]
     assert all(1 not in (one.beat, *one.also) for one in left.keyframes)
-=======
+
+
 @for_each(
     ("words", "does"),
     [({}, "open"), ({"does": "close"}, "close"), ({"does": ""}, ""), ({"caption": "clapping while seated"}, "")],
@@ -117,4 +117,3 @@ def test_what_becomes_of_the_piece_stays_while_the_same_is_done_and_nobody_says_
     rows[-1] |= words
     found = rewritten(script, [EditedKeyframe.model_validate(row) for row in rows], home())
     assert found.keyframes[-1].does == does
->>>>>>> ead80b64a979d65c5fbb554c11c800076de9d742
