@@ -85,11 +85,10 @@ def done_to(clause: Clause, piece: str, last: str = "") -> Literal[Does, ""]:
 def _switched(verb: str, rest: frozenset[str]) -> Literal[Does, ""]:
     """Whether a verb and the words after it switch something on or off."""
     table = theme_words()
-    if not verb or verb in table["switched_things"]:  # "Lamp on."
-        return "on" if "on" in rest else "off" if rest & {"off", "out"} else ""
-    if verb in table["quenching_verbs"] or (verb in table["switching_verbs"] | {"shut"} and rest & {"off", "out"}):
+    turns = not verb or verb in table["switching_verbs"] | table["switched_things"] | {"shut"}  # "Lamp on."
+    if verb in table["quenching_verbs"] or (turns and rest & {"off", "out"}):
         return "off"
-    return "on" if verb in table["lighting_verbs"] or (verb in table["switching_verbs"] and "on" in rest) else ""
+    return "on" if verb in table["lighting_verbs"] or (turns and "on" in rest) else ""
 
 
 def _is_lit(piece: str) -> bool:

@@ -122,7 +122,8 @@ class ReplayedStory:
             index |= dict(zip(range(first, last), range(start, stop), strict=False))
         return [
             EditedKeyframe(
-                **one.model_dump(include=set(Keyframe.model_fields)) | {"index": index.get(number), "held": one.held}
+                **one.model_dump(include=set(Keyframe.model_fields))
+                | {"index": index.get(number), "held": one.held, "does": one.does}
             )
             for number, one in enumerate(self.keyframes)
         ]

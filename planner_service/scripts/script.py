@@ -72,7 +72,7 @@ class Keyframe(_ScriptPart):
     """A furniture word, with an instance number when a script uses two of a kind ("wardrobe 2"), or "floor"."""
     held: Line = Field("", max_length=MAX_THING_LENGTH, exclude_if=lambda thing: not thing)
     """What is in the hands, or is reached for, by its name: "letter"; empty where only the caption says."""
-    does: Literal[Does, ""] = Field("", exclude_if=lambda does: not does)
+    does: Literal[Does, ""] = Field("", exclude_if=lambda done: not done)
     """What becomes of the piece under the hand: it is opened, shut, opened for as long as the hand is there ("into"),
     switched on or off; empty where nothing of it moves."""
 

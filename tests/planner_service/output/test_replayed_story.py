@@ -167,3 +167,16 @@ def test_what_is_in_the_hands_is_kept_and_may_be_changed(tmp_path: Path) -> None
     actions = pipeline().act(planned.request, planned.stage, kept)
     assert [one.holds for one in actions][at] == "beer"
     assert [one.spot for one in actions] == [one.spot for one in story.actions]
+
+
+def test_what_becomes_of_a_piece_is_kept_and_may_be_changed(tmp_path: Path) -> None:
+    at = next(i for i, one in enumerate(made()["script"]["keyframes"]) if one["skill"] == "touch")
+    story, planned = changed(tmp_path, at, does="open")
+    assert planned.script.keyframes[at].does == "open"
+    assert not story.unchanged
+    _, bare = changed(tmp_path, at, does="")
+    assert "does" not in bare.script.keyframes[at].model_dump()
+    actions = pipeline().act(planned.request, planned.stage, story.kept(planned))
+    assert [one.spot for one in actions] == [one.spot for one in story.actions]
+    with pytest.raises(RequestError):
+        changed(tmp_path, at, does="explode")
