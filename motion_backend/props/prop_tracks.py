@@ -42,7 +42,7 @@ GAP: Final = 0.4
 def prop_tracks(motion: Motion, role: Role) -> tuple[PropTrack, ...]:
     """All props of a motion, in the order in which they come; frames count from its first."""
     moments = [one for span in spans_of(motion) if (one := Moment.of(motion, role, *span)) is not None]
-    if not (moments or role.worked):
+    if not len(motion) or not (moments or role.worked):
         return ()
     hands = Hands.of(motion)
     found = [*_in_hand(hands, moments), *fixture_tracks(hands, motion, role)]

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import json
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from for_each import for_each
 
+from motion_backend.body.cast import worked_from_dict, worked_to_dict
+from motion_backend.formats.glb_film import props_glb
 from motion_backend.motion import Action, Emotion, Skill
 from planner_service import Pipeline, StoryRequest
 from planner_service.grounding.opening_places import opening_piece
@@ -132,5 +138,21 @@ def test_who_comes_home_has_the_door_open_behind_and_shut_then():
     story = Pipeline().make(StoryRequest("She comes home and reads on the sofa.", seed=3))
     first = story.role.worked.get(0)
     assert first is not None
-    assert (first.does, first.piece.category) == ("close", "room door")
+    assert (first.does, first.piece.category) == ("close", "room_door")
     assert story.actions[0].begins
+
+
+@for_each(
+    "theme",
+    [
+        "A tired woman comes home and falls asleep on the sofa.",
+        "She opens the curtains and switches on the lamp.",
+        "He opens the wardrobe, takes out a coat and closes it.",
+    ],
+)
+def test_what_hands_do_to_pieces_is_the_same_after_it_was_kept(theme: str) -> None:
+    story = Pipeline().make(StoryRequest(theme))
+    assert story.role.worked
+    kept = {at: worked_from_dict(json.loads(json.dumps(worked_to_dict(one)))) for at, one in story.role.worked.items()}
+    again = props_glb(story.motion, replace(story.role, worked=kept))
+    assert again == props_glb(story.motion, story.role)
