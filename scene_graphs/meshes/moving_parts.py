@@ -38,7 +38,7 @@ FOOD: Final = ((1.0, 0.55, 0.35), (0.55, 0.85, 0.40), (1.05, 0.95, 0.55), (0.95,
 """Of the inside of other pieces, of the boards in it, and of what lies on these; in a refrigerator."""
 SKY, SUN, HILLS = (0.75, 1.25, 1.75), (1.9, 1.6, 0.6), ((0.45, 1.15, 0.55), (0.20, 0.70, 0.50))
 """What a screen shows."""
-ROOM_DOOR, CURTAINS = "room_door", "window_curtains"
+ROOM_DOOR, CURTAINS = "room_door", "curtain_pair"
 """What doors and curtains of rooms are called, as pieces of their own."""
 DAY: Final = (1.55, 1.70, 1.85)
 """Of what is outside an open door."""
