@@ -18,7 +18,10 @@ from planner_service.themes.sentence_parser import Clause
 _REMEMBERED: Final = 6
 """Beats back to which "it" reaches."""
 _CALLS: Final = re.compile(r"\b(?:calls?|called|calling|phones?|telephone|rings?|rang|ringing)\b")
-_ANSWERS: Final = re.compile(r"(?:finally |then )?(?:picks?|picked) up(?: (?:after all|at last|again|finally|anyway))?")
+_ANSWERS: Final = re.compile(
+    r"(?:finally |then )?(?:picks?|picked) (?:(?:it|the phone|the receiver) )?up"
+    r"(?: (?:after all|at last|again|finally|anyway))?"
+)
 """Of a phone that was told of."""
 _LETTERS: Final = frozenset(("letter", "note", "card", "postcard", "telegram", "bill", "list", "invitation"))
 _READ: Final = _LETTERS | {"book", "novel", "newspaper", "magazine", "diary", "text", "message", "email", "comic"}

@@ -13,6 +13,7 @@ from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.opening_words import goes_out
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things, things_called
@@ -59,6 +60,7 @@ _BARE: Final = re.compile(
     r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|dressing)\b"
 )
 """Captions in which nothing is in the hands; but a box."""
+LEFT: Final = "that the home is left"
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
 """Of captions that do it several times."""
 
@@ -83,7 +85,8 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
     besides = [
         text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
     ]
-    more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes))
+    left = (LEFT,) if goes_out(clause.text) else ()
+    more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes), *left)
     return (*besides, *(text for text in more if not any(text in one for one in besides)))
 
 
@@ -110,6 +113,9 @@ def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     named = _held_words(keyframes)
     told = [one for one in told if lemma_of(_words(one["what"])[-1]) not in (named if bare else named | seen)]
     found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]
+    plain = " ".join(clause.text.split()[1:2]).strip(",.;")  # "chops vegetables"
+    if bare and plain and lemma_of(plain.lower()) not in named and _is_carried(plain):
+        found.append(plain)
     return found[:1]
 
 
