@@ -36,7 +36,8 @@ class Outcome:
     reached_strict: bool
     """Sustained within 10 cm."""
     error: float | None
-    """Metres from joint to goal: the smallest in the last second of the contact. None where nothing is touched."""
+    """Metres from joint to goal: the smallest in the last second of the contact; of a hand that held for a second
+    within 10 cm, of that hold. None where nothing is touched."""
     mean_error: float | None
     """The mean of the same over the hold, the longest time within 10 cm. None where nothing is touched."""
     seconds: float | None
@@ -74,13 +75,15 @@ def _contact(action: Action, body: Kinematics) -> Outcome:
     distance = contact_distance(body)
     within = distance <= THRESHOLDS[action.skill]
     start, stop = longest_run(within)
-    end = stop if stop > start else len(distance)
-    last = distance[max(end - round(SUSTAINED * fps), 0) : end]
     closest, farthest = longest_run(distance <= STRICT)
+    strict = farthest - closest >= SUSTAINED * fps
+    # Who sits or lies stays, and is judged by where that ends; a hand has been where it held, and then goes back.
+    end = farthest if action.skill is Skill.TOUCH and strict else stop if stop > start else len(distance)
+    last = distance[max(end - round(SUSTAINED * fps), 0) : end]
     found = Outcome(
         reached=stop - start >= SUSTAINED * fps,
         reached_any=bool(within.any()),
-        reached_strict=farthest - closest >= SUSTAINED * fps,
+        reached_strict=strict,
         error=float(last.min()),
         mean_error=_over_hold(distance, fps),
         seconds=_first(within, fps),

@@ -265,6 +265,22 @@ def test_the_error_is_the_smallest_of_the_last_second_of_the_contact_and_the_tim
     assert found.seconds == pytest.approx(20 / FPS)
 
 
+@for_each(("held", "hovers", "error"), [(40, 0.15, 0.01), (20, 0.15, 0.15), (40, 0.25, 0.01), (20, 0.25, 0.01)])
+@for_each("apart", [0, 5])
+def test_a_hand_is_judged_where_it_held_for_a_second_however_long_it_stays_about(
+    held: int, hovers: float, error: float, apart: int
+) -> None:
+    gaps = np.concatenate([np.full(20, 0.9), np.full(held, 0.01), np.full(apart, 0.3), np.full(90, hovers)])
+    motion = standing_still(root=gaps[:, None] * [0.0, 1.0, 0.0])
+    at = Kinematics.of(standing_still(1)).positions[0]
+    for skill, joint in ((Skill.TOUCH, "right_wrist"), (Skill.SITDOWN, "pelvis")):
+        x, y, z = at[INDEX[joint]].tolist()
+        body = Kinematics.of(replace(motion, goals=(ContactGoal(joint, (x, y, z)),)))
+        found = contact_error.outcome(Action(skill, "", Emotion.NEUTRAL), body)
+        stays = hovers if hovers < WITHIN[skill] else 0.01
+        assert found.error == pytest.approx(error if skill is Skill.TOUCH else stays, abs=1e-5)
+
+
 def test_the_farthest_of_several_goals_decides() -> None:
     motion = standing_still(40)
     at = Kinematics.of(motion).positions[0]
