@@ -148,11 +148,12 @@ class ActedBeats:
         if not self.outcomes:
             return []
         other = f"{self.other_share:.0%}"
-        share = "nothing else is played" if other == "0%" else f"{other} of the screen time plays something else"
+        share = "; nothing else is played" if other == "0%" else f"; {other} of the screen time plays something else"
+        share = "" if other == "0%" and self.stood_for else share
         plain = all(one.acted and not one.beat.unshown for one in self.outcomes)
         more = f", something stands for {self.stood_for} more" if self.stood_for else ""
         return [
-            f"{self.acted} of {self.asked} beats of your theme are acted{more}; {share}",
+            f"{self.acted} of {self.asked} beats of your theme are acted{more}{share}",
             *(f"not acted: {one.beat.text} ({one.why})" for one in self.missing),
             *(
                 f"not acted as such, something stands for it: {one.beat.text}{one.why.removeprefix(IN_ITS_PLACE)}"
