@@ -146,7 +146,7 @@ def _before(places: Array, depth: Array, clear: float) -> float:
 
 HOLLOW = 0.035
 """From the hollow of a knee that is bent over an edge to the middle of the knee (metres)."""
-MIN_EDGE = 0.05
+MIN_EDGE = 0.065
 """Thighs rest on so much of a seat at least (metres)."""
 FARTHEST_BACK = 45.0
 """Who leans back on stretched legs does so by as much at most (degrees)."""

@@ -60,7 +60,11 @@ def ended(app: FastAPI, story_id: str, status: str) -> None:
 
 async def made(app: FastAPI, client: Any, motion: dict[str, Any] = MOTION) -> dict[str, Any]:
     """A motion that was acted out."""
-    story = (await client.post("/v1/motions", json=motion)).json()
+    return moved(app, (await client.post("/v1/motions", json=motion)).json())
+
+
+def moved(app: FastAPI, story: dict[str, Any]) -> dict[str, Any]:
+    """A story that was posted, acted out."""
     desk = Maker(Stories(app.state.parts.engine), Pipeline(app.state.parts.shelves), "one")
     desk.plan(story["id"])
     desk.furnish(story["id"])
@@ -144,6 +148,18 @@ async def test_what_is_in_the_hands_is_had_as_soon_as_the_body_has_moved(app: Fa
     assert {channel["target"]["path"] for channel in document["animations"][0]["channels"]} == {
         "translation", "rotation", "scale",
     }  # fmt: skip
+
+
+async def test_what_is_held_and_what_doors_do_is_had_of_a_story_in_which_somebody_comes_home(app: FastAPI) -> None:
+    theme = "He comes home, slams the cabinet and drinks a glass of wine on the sofa."
+    async with calling(app) as client:
+        story = moved(app, (await client.post("/v1/stories", json={"theme": theme, "seed": 2})).json())
+        file = await client.get(story["links"]["props"])
+    assert file.status_code == 200
+    document, _ = read_glb(file.content)
+    names = " ".join(node["name"] for node in document["nodes"])
+    assert "wine" in names
+    assert "door" in names
 
 
 async def test_without_the_library_usd_is_not_provided_and_the_remedy_is_told(
