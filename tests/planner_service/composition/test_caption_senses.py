@@ -51,7 +51,7 @@ def test_a_caption_shows_its_own_deed_and_stands_for_any_other(
 def test_what_is_stood_for_is_not_acted_and_named() -> None:
     found = planned("She conducts an orchestra and sleeps.")
     assert [(one.acted, one.stood_for) for one in found.outcomes] == [(False, True), (True, False)]
-    assert found.lines()[0].startswith("1 of 2 beats of your theme are acted, something stands for 1 more;")
+    assert found.lines()[0].startswith("1 of 2 beats of your theme are acted, something stands for 1 more")
     assert "not acted as such, something stands for it: conducts an orchestra" in found.lines()
 
 
