@@ -14,10 +14,12 @@ from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.opening_words import meant_by_it
 from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.things import things
 
 _REMEMBERED: Final = 6
 """Beats back to which "it" reaches."""
-_CALLS: Final = re.compile(r"\b(?:calls?|called|calling|phones?|telephone|rings?|rang|ringing)\b")
+_RINGS: Final = re.compile(r"\b(?:phone|telephone|mobile|rings?|rang|ringing)\b")
+_CALLS: Final = ("call", "phone")
 _ANSWERS: Final = re.compile(
     r"(?:finally |then )?(?:picks?|picked) (?:(?:it|the phone|the receiver) )?up"
     r"(?: (?:after all|at last|again|finally|anyway))?"
@@ -38,7 +40,7 @@ def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequ
     that was named before."""
     read, before = beats[index], beats[max(index - _REMEMBERED, 0) : index]
     clause = read.clause
-    if _ANSWERS.fullmatch(read.text) and any(_CALLS.search(one.text) for one in before):
+    if _ANSWERS.fullmatch(read.text) and _has_rung(before):
         clause = replace(clause, lemmas=("answer", "the", "phone"))
     elif letter := _letter_meant(read, before):
         clause = replace(clause, lemmas=(clause.verb, "the", letter, *clause.lemmas[2:]))
@@ -51,6 +53,16 @@ def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequ
         clause = replace(clause, text=told, lemmas=(*clause.lemmas[:1], "the", lemma_of(meant), *clause.lemmas[2:]))
     read = replace(read, clause=clause)
     return read, [*beats[:index], read, *beats[index + 1 :]]
+
+
+def _has_rung(before: Sequence[ReadBeat]) -> bool:
+    """Whether a phone was told of, or somebody else called, and nothing since: not "calls his dog, finds a ball"."""
+    for one in reversed(before):
+        if _RINGS.search(one.text) or (one.beat.who and one.clause.verb in _CALLS):
+            return True
+        if not things().keys().isdisjoint(one.clause.lemmas[1:]):
+            return False
+    return False
 
 
 def _letter_meant(read: ReadBeat, before: Sequence[ReadBeat]) -> str:

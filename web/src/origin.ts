@@ -34,7 +34,7 @@ export function againWords({ reused, take, keyframes }: Story, origin: Story | n
   // All pairs before the first that differs are in both.
   const first = origin ? align(origin.keyframes, keyframes).findIndex(({ same }) => !same) : -1;
   const leads = first > reused ? ", so that it leads to what follows now" : "";
-  return `Acted again from moment ${reused + 1} on${leads}; before it, the film is the same.`;
+  return `Acted again from moment ${reused + 1} on${leads}; before it, the body does the same.`;
 }
 
 /** Fill a line with it; `origin` is null while it is not there, or no more. */

@@ -21,10 +21,10 @@ test("all that was changed is named, moment by moment", () => {
 
 test("the moment before the first change is acted again too, and it is said why", () => {
   const take = story({ take: 1, reused: 4, keyframes: script("a", "b", "c", "d", "e", "x", "g") });
-  expect(againWords(take, BEFORE)).toBe("Acted again from moment 5 on, so that it leads to what follows now; before it, the film is the same.");
+  expect(againWords(take, BEFORE)).toBe("Acted again from moment 5 on, so that it leads to what follows now; before it, the body does the same.");
   expect(againWords({ ...take, keyframes: script("a", "b", "c", "d", "e", "g") }, BEFORE)).toContain("so that it leads");
-  expect(againWords({ ...take, reused: 5 }, BEFORE)).toBe("Acted again from moment 6 on; before it, the film is the same.");
-  expect(againWords(take, null)).toBe("Acted again from moment 5 on; before it, the film is the same.");
+  expect(againWords({ ...take, reused: 5 }, BEFORE)).toBe("Acted again from moment 6 on; before it, the body does the same.");
+  expect(againWords(take, null)).toBe("Acted again from moment 5 on; before it, the body does the same.");
 });
 
 test("nothing is said while it is not known, and all or none is said as such", () => {

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
+from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
@@ -109,3 +110,16 @@ def planned(theme: str) -> LongScript:
 @cache
 def library() -> ScriptLibrary:
     return ScriptLibrary(built_in(), Features(HashingEncoder()))
+
+
+@for_each(
+    ("theme", "phones"),
+    [
+        ("The phone rings. Aylin picks it up.", True),
+        ("Her mother calls. She lets it ring, then picks up after all.", True),
+        ("The phone rings, but she ignores it. She drops a spoon and picks it up.", False),
+        ("She finds a ball and picks it up.", False),
+    ],
+)
+def test_a_phone_that_rang_is_picked_up_and_no_other_thing_that_was_told_of_since(theme: str, phones: bool) -> None:
+    assert any("phone" in one.caption for one in planned(theme).keyframes) == phones
