@@ -286,8 +286,8 @@ def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
                 move.aside_m * left + move.ahead_m * ahead + move.off_m * way.laid.normal
             )
             tilt = rotations.axis_to_quat("x", -side * move.tilt_rad * wave)
-            bend = rotations.axis_to_quat("z", side * move.bend_rad * wave)
-            palms[:, index] = rotations.compose(palms[:, index], rotations.compose(tilt, bend))
+            bend = rotations.rotvec_to_quat(-move.bend_rad * wave[:, None] * left)
+            palms[:, index] = rotations.compose(rotations.compose(bend, palms[:, index]), tilt)
     spine = held.spine + np.stack([0 * aside, row.spine_turn_rad / keys.wash.usual_m * aside, 0 * aside], axis=1)
     away = 1.0 if way.laid.hand == "right" else -1.0
     ear = ease[:, None] * away * np.array([0.0, row.ear_turn_rad, row.ear_side_rad])

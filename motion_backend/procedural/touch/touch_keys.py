@@ -241,7 +241,7 @@ class HandMove:
     tilt_rad: float = 0.0
     """About the way of the fingers, the thumb downwards."""
     bend_rad: float = 0.0
-    """At the wrist, fingers up off the surface."""
+    """At the wrist, fingers off the surface."""
     phase_share: float = 0.0
     taps: bool = False
     """Whether only its upper half is gone through."""
