@@ -201,12 +201,14 @@ def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> 
 
 
 def _handled(caption: str, placed: Placed, spot: Spot) -> bool:
-    """Whether what hands do in a caption is done at such a piece: nobody washes a chair, turns a ceiling lamp or knocks
-    on a mattress."""
-    doing = handling_of(caption)
-    if doing and (furniture.class_of(placed.category) in _SAT_ON or placed.category in _HUNG):
+    """Whether what hands do in a caption is done at such a piece: nobody washes a chair, turns a ceiling lamp, stirs on a
+    mattress or knocks on a screen."""
+    doing, kind = handling_of(caption), furniture.class_of(placed.category)
+    if doing and (kind in _SAT_ON or placed.category in _HUNG):
         return False
-    if doing == "knock" and (furniture.class_of(placed.category) not in _KNOCKED_ON or spot.height == "low"):
+    if doing not in ("", "pick", "put") and kind == "bed":
+        return False
+    if doing == "knock" and (kind not in _KNOCKED_ON or spot.height == "low"):
         return False
     return is_top(spot.normal) if doing in _ON_TOPS else True
 
