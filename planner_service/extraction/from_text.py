@@ -18,11 +18,12 @@ from planner_service.extraction.extraction_result import (
 )
 from planner_service.extraction.llm_text import Numbered, ask_for_scripts, pieces_of, unread
 from planner_service.extraction.script_writer import RULES, Draft, Maker
-from planner_service.extraction.text_files import ENGLISH, ExtractionError, language_of
+from planner_service.extraction.text_files import ExtractionError
 from planner_service.extraction.text_rules import SceneRead, read_scene
 from planner_service.extraction.text_scenes import TextScene
 from planner_service.llm.client import for_story
 from planner_service.llm.protocol import ModelError
+from planner_service.themes.language import ENGLISH, language_of
 
 _MAX_FAILURES: Final = 3
 """Unanswered questions after which a model is not asked again."""

@@ -12,6 +12,7 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.acted_beats import RESTS
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
+from planner_service.themes.language import ANOTHER, ENGLISH, foreign_language, language_of
 from planner_service.themes.lexicon import grammar, is_known_word, lemma_of
 from planner_service.themes.memories import RECALLING, recalled_in
 from planner_service.themes.no_deeds import tells_no_deed
@@ -281,12 +282,12 @@ def names_a_thing(clause: Clause) -> bool:
 
 def _refuse_foreign(text: str) -> None:
     words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
-    foreign = [word for word in words if word in theme_words()["foreign"]]
     plain = [token.low for token in tokens_of(text) if token.text.isalpha() and token.text.islower()]
-    if len(plain) > 3 and 2 * sum(map(is_known_word, plain)) < len(plain):
-        raise ThemeError(f"most words of {text[:60]!r} are no everyday English. {LANGUAGE}")
-    if not any(re.search(r"[a-z]", word) for word in words) or len(foreign) >= max(2, 0.2 * len(words)):
-        raise ThemeError(f"{text[:60]!r} is not English. {LANGUAGE}")
+    unknown = len(plain) > 3 and 2 * sum(map(is_known_word, plain)) < len(plain)
+    if unknown or not any(re.search(r"[a-z]", word) for word in words) or language_of(text) not in (ENGLISH, ANOTHER):
+        language = foreign_language(text)
+        what = f"looks like {language}" if language != ANOTHER else "is no everyday English"
+        raise ThemeError(f"{text[:60]!r} {what}. {LANGUAGE}")
     if len(_CODE.findall(text)) > max(3, len(words) / 3):
         raise ThemeError(f"{text[:60]!r} is no prose. {LANGUAGE}")
 

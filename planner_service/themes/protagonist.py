@@ -335,10 +335,10 @@ def _is_several(subject: str) -> bool:
 def is_person(subject: str) -> bool:
     """Whether words may name a person: a pronoun, a name, or a noun for people."""
     words = [token.text for token in tokens_of(subject)]
-    if not words:
-        return False
     if head_of(subject)[:1].islower():  # "Carla's dog"
         words = [word for word in words if not word.endswith(("'s", "’s"))]
+    if not words:  # "there's", which is somebody's nothing
+        return False
     if words[-1].lower() in _SUBJECTS or words[-1].lower() in _FIRST_PERSON:
         return True
     people = theme_words()["people"]

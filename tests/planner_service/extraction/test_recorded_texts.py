@@ -12,9 +12,10 @@ from planner_service.extraction import llm_text
 from planner_service.extraction.screenplay import is_screenplay
 from planner_service.extraction.script_writer import in_present, summarise
 from planner_service.extraction.subtitles import SubtitleError, read_subtitles
-from planner_service.extraction.text_files import ExtractionError, decode, language_of, read_text
+from planner_service.extraction.text_files import ExtractionError, decode, read_text
 from planner_service.extraction.text_scenes import Line, TextScene, scenes_of_cues, scenes_of_text
 from planner_service.scripts.script import Keyframe
+from planner_service.themes.language import language_of
 
 SRT: Final = """1
 00:00:01,000 --> 00:00:03,500

@@ -8,11 +8,11 @@ import pytest
 from for_each import for_each
 from hypothesis import given
 from hypothesis import strategies as st
-from stories import GERMAN, NARRATIVE, SCREENPLAY
+from stories import NARRATIVE, SCREENPLAY
 
 from planner_service.extraction.script_writer import in_present
 from planner_service.extraction.subtitles import Cue
-from planner_service.extraction.text_files import MAX_TEXT_LENGTH, ExtractionError, language_of, read_text
+from planner_service.extraction.text_files import MAX_TEXT_LENGTH, ExtractionError, read_text
 from planner_service.extraction.text_scenes import scenes_of_cues, scenes_of_text
 from planner_service.scripts.script_duplicates import slug_of
 
@@ -122,21 +122,6 @@ def test_an_id_is_a_slug_that_is_not_taken(summary: str, taken: set[str]) -> Non
     second = slug_of(summary, "a text", {*taken, first})
     assert re.fullmatch(r"[a-z0-9][a-z0-9-]{0,79}", first)
     assert len({first, second} - taken) == 2
-
-
-@for_each(
-    ("text", "language"),
-    [
-        (NARRATIVE, "English"),
-        (GERMAN, "German"),
-        ("Elle entre dans le salon et se laisse tomber sur le canapé, car elle est très fatiguée.", "French"),
-        ("Она вошла в комнату и села на диван.", "another language"),
-        ("She sat down.", "English"),
-        ("lorem ipsum dolor sit amet consectetur adipiscing elit sed do eiusmod tempor " * 3, "another language"),
-    ],
-)
-def test_the_language_is_told_by_common_words(text: str, language: str) -> None:
-    assert language_of(text) == language
 
 
 @for_each(
