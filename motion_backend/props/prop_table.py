@@ -14,11 +14,12 @@ from scene_graphs.data_tables import read_table, require_known, require_unlike, 
 Vector = tuple[float, float, float]
 Direction = Literal[
     "up", "down", "ahead", "left", "trunk", "across", "fingers", "palm", "thumb",
-    "face", "mouth", "jaw", "crown", "nose", "inward",
+    "face", "mouth", "jaw", "crown", "nose", "inward", "poured",
 ]  # fmt: skip
 """Of the world (up, down), of the chest (ahead, left, and up the trunk), from the right to the left hand (across), of
 the hand, or of both between them (fingers, palm, thumb), from there to the eyes and to the mouth, of the head: up
-(crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward)."""
+(crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward); and up,
+but tipped to the mouth the nearer that is and the farther back the head goes (poured)."""
 
 
 @table
