@@ -32,7 +32,9 @@ COPY scene_graphs scene_graphs
 COPY motion_backend motion_backend
 COPY planner_service planner_service
 COPY --from=page /app/planner_service/page planner_service/page
-RUN --mount=type=cache,target=/root/.cache/pip pip install .
+# Language models, agents and USD; films are read with EXTRAS=llm,mcp,usd,video, whose wheels hold FFmpeg under the GPL.
+ARG EXTRAS=llm,mcp,usd
+RUN --mount=type=cache,target=/root/.cache/pip pip install ".[$EXTRAS]"
 
 FROM python:3.11-slim
 COPY --from=build /opt/sims /opt/sims

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -131,6 +132,14 @@ def test_the_image_runs_as_nobody_special_keeps_its_data_and_can_be_stopped() ->
     assert said["CMD"] == '["sims", "serve"]'
     assert said["VOLUME"] in image_folders([last])
     assert "/healthz" in said["HEALTHCHECK"]
+
+
+def test_the_image_has_the_extras_but_those_that_bring_another_licence_or_a_compiler() -> None:
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    asked = re.search(r"^ARG EXTRAS=(\S+)$", (ROOT / "Dockerfile").read_text(encoding="utf-8"), re.MULTILINE)
+    assert asked is not None
+    assert extras.keys() - set(asked[1].split(",")) == {"video", "asr", "llamacpp", "dev", "docs"}
+    assert set(asked[1].split(",")) <= extras.keys()
 
 
 @for_each("line", ["ADD x y", "RUN <<EOF", "# syntax=docker/dockerfile:1", "ONBUILD RUN true", "FROM a b c"])

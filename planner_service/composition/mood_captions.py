@@ -9,7 +9,7 @@ from functools import cache
 from typing import Final
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import deed_table
+from planner_service.composition.deed_lexicon import captions_of_gestures, deed_table
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import usual
 
@@ -43,10 +43,12 @@ def walk_of(mood: Emotion) -> str:
 
 @cache
 def _shares() -> dict[tuple[Skill, str], dict[Emotion, float]]:
-    """How the library's keyframes of each caption are shared among the moods."""
+    """How the library's keyframes of each caption are shared among the moods; a gesture shows a deed, in any mood."""
     counts: dict[tuple[Skill, str], Counter[Emotion]] = {}
     for script in built_in():
         for keyframe in script.keyframes:
+            if (keyframe.skill, keyframe.caption) in captions_of_gestures():
+                continue
             counts.setdefault((keyframe.skill, keyframe.caption), Counter())[keyframe.mood] += 1
     return {key: {mood: n / moods.total() for mood, n in moods.items()} for key, moods in counts.items()}
 

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import json
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from model_server import ModelServer, failing
+from model_server import Asked, ModelServer, Sent, chat, failing
 from running import RunningService, finished
+
+from planner_service.jobs.story_stages import AT_ONCE
 
 pytestmark = pytest.mark.service
 THEME = "Sam reads a book on the sofa and then lies down on the bed in tears."
@@ -123,3 +126,23 @@ def test_a_story_whose_model_is_refused_fails_and_says_why_where_settings_insist
     for file in tmp_path.rglob("*"):
         assert not file.is_file() or key.encode() not in file.read_bytes(), file
     assert THEME not in service.log.read_text()
+
+
+def test_a_worker_goes_on_with_other_stories_while_one_waits_for_its_model(tmp_path: Path) -> None:
+    """No plan is answered before as many stories wait for one as may be in the making; there is one worker."""
+    together = threading.Barrier(AT_ONCE)
+
+    def answer(asked: Asked) -> Sent:
+        if "say, beat by beat" in asked.prompt:
+            together.wait(60)
+        return chat(json.dumps(next(reply for words, reply in WELL.items() if words in asked.prompt)))
+
+    with ModelServer(answer) as server:
+        given = {"MODEL": "openai:gpt-x", "BASE_URL": server.url, "API_KEY": "sk-test-0123456789abcdef"}
+        environment = {f"SIMS_LLM_{name}": value for name, value in given.items()} | {"SIMS_WORKERS": "1"}
+        with RunningService(tmp_path, environment=environment) as service, service.client() as client:
+            posted = [client.post("/v1/stories", json={"theme": THEME, "seed": seed}) for seed in range(AT_ONCE)]
+            stories = [finished(client, one.json()["id"]) for one in posted]
+    assert [story["state"] for story in stories] == ["succeeded"] * AT_ONCE
+    assert {story["planner"] for story in stories} == {"llm:openai:gpt-x"}
+    assert not together.broken

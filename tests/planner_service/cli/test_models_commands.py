@@ -9,12 +9,17 @@ from pathlib import Path
 
 import pytest
 from for_each import for_each
+from good_model import answer_to, planned_themes
+from model_server import ModelServer, chat
 from typer.testing import CliRunner
 
 from planner_service.cli import app
 from planner_service.cli.record_command import read_lines
 from planner_service.cli.service import EXTRAS
-from planner_service.pipeline import RequestError
+from planner_service.library.library import Shelves
+from planner_service.llm.factory import load_model
+from planner_service.pipeline import Pipeline, RequestError, StoryRequest
+from planner_service.settings import read_settings
 
 RUN = CliRunner()
 
@@ -44,6 +49,25 @@ def test_what_is_set_and_installed_is_listed(monkeypatch: pytest.MonkeyPatch, tm
 def test_a_model_is_named_for_one_command(command: list[str]) -> None:
     failed = RUN.invoke(app, [*command, "--model", "gpt-5"])
     assert "'gpt-5' is not known" in str(failed.exception)
+
+
+def test_what_a_model_answered_to_themes_is_played_back_without_it(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("SIMS_LLM_API_KEY", "sk-test-0123456789abcdef")
+    theme = planned_themes()["morning"]["theme"]
+    (tmp_path / "themes.txt").write_text(f"{theme}\n", encoding="utf-8")
+    with ModelServer(lambda asked: chat(json.dumps(answer_to(asked.prompt)), asked.path)) as server:
+        monkeypatch.setenv("SIMS_LLM_BASE_URL", server.url)
+        asks = ["record", "themes.txt", "--out", "talk.jsonl", "--model", "openai:gpt-x"]
+        said = RUN.invoke(app, asks, catch_exceptions=False).output
+        asked = len(server.asked)
+        assert RUN.invoke(app, asks, catch_exceptions=False).output.endswith("plays them back\n")
+        assert len(server.asked) == asked
+    assert "1 of 1 themes recorded; SIMS_LLM_MODEL=replay:talk.jsonl plays them back" in said
+    settings = read_settings(llm_model="replay:talk.jsonl")
+    planned = Pipeline(Shelves(cache=tmp_path), load_model(settings)).plan(StoryRequest(theme))
+    assert planned.script.planner == "llm:openai:gpt-x (replayed)"
 
 
 def test_a_recording_wants_a_model_and_themes(tmp_path: Path) -> None:
