@@ -233,7 +233,7 @@ class _Director:
                 if front is not None:
                     score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
-                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), self._doing(framing)).mean())
+                    score -= HAND_HIDDEN * sight.hidden(camera, self._doing(framing))
                 score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
                 scored.append(_View(score - self._broken(camera, before, start), camera, points))
         return _sorted(_frontal(scored, front))
@@ -296,7 +296,7 @@ class _Director:
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score += TO_FRONT * front.seen(camera) if front is not None else 0.0
-                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), hands).mean())
+                    score -= HAND_HIDDEN * sight.hidden(camera, hands)
                     score -= ALONG * max(abs(float(arm @ towards)) for arm in _directions(poses, close.hands))
                 scored.append(_View(score - self._broken(camera, before, close.start), camera))
         return _sorted(scored)

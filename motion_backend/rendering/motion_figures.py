@@ -27,6 +27,8 @@ ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "c
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
 
+WORKED_AT = 0.25
+"""What a body is as near to is part of what it does (metres)."""
 REACH = 4.5
 """What is farther from the body, or from what a camera looks at, is of no picture of it (metres)."""
 
@@ -132,12 +134,17 @@ class Prop:
     """The wall it is part of."""
     stump: Solid | None = None
     """What is left of a wall where it would stand in the way."""
+    borne: tuple[Side, ...] = ()
+    """The walls that it stands tall against."""
 
     def stands_before(self, camera: Camera, points: NDArray[np.floating], room: int | None) -> bool:
         """Whether a camera leaves it away to see points (N, 3) in a room, as a doll's house is open in front."""
         eye = np.asarray(camera.eye)
         if self.side is not None and self.side.crosses(eye[[0, 2]], points[:, [0, 2]]):
             return True
+        if any(not side.faces(eye[[0, 2]]) for side in self.borne):
+            away = np.maximum(np.maximum(self.low - points, points - self.high), 0.0)
+            return bool(np.linalg.norm(away, axis=1).min() > WORKED_AT)
         if self.room == room:
             return self.side is not None and not self.side.faces(eye[[0, 2]])
         nearer = (np.asarray(camera.target) - (self.low + self.high) / 2) @ camera.axes[2]
@@ -154,6 +161,7 @@ def home_props(home: Home) -> list[Prop]:
         for mesh in stump_meshes(home)
     }
     sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
+    borne = {placed.id: tuple(side for side in sides if side.bears(placed)) for placed in home.objects}
     props = []
     for mesh in home_meshes(home):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
@@ -163,9 +171,9 @@ def home_props(home: Home) -> list[Prop]:
         opacity = 0.25 if mesh.color[3] < 1 else 1.0
         casts = not mesh.name.startswith(SHADOWLESS)
         solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=opacity, casts=casts)
-        props.append(
-            Prop(mesh.name, solid, low, high, side.room if side else home.room_at(middle), side, stumps.get(mesh.name))
-        )
+        room = side.room if side else home.room_at(middle)
+        against = borne.get(mesh.name.partition(":")[0], ())
+        props.append(Prop(mesh.name, solid, low, high, room, side, stumps.get(mesh.name), against))
     return props
 
 
@@ -177,7 +185,7 @@ def around(
     reach: float = REACH,
 ) -> list[Solid]:
     """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room:
-    of a wall the foot is left."""
+    of a wall the foot is left, and what stands tall against it goes with it, unless the body is at that."""
     target = np.asarray(camera.target)
     shown = []
     for prop in props:
