@@ -44,6 +44,8 @@ NEAR_HAND, IN_IT, ABOVE_HAND = 0.25, 0.08, 0.08
 above it: what a hand lies on or in does not stand before it."""
 FLAT = 0.35
 """The cosine between a front and a look at it up to which it is the better seen, the straighter it is looked at."""
+BESIDE = np.radians(80.0)
+"""How far round from straight before a front one sees it yet, and the profile of who stands at it."""
 FRONT = 2.0
 """What it counts to see that well the front of what is touched."""
 
@@ -151,6 +153,12 @@ class Front:
         way = np.asarray(camera.eye) - self.place
         return float(np.clip(way @ self.outward / np.linalg.norm(way) / FLAT, -1.0, 1.0))
 
+    @property
+    def beside(self) -> tuple[float, float]:
+        """Yaws from which it and the face of who stands at it are seen."""
+        before = float(np.arctan2(self.outward[0], self.outward[2]))
+        return before - BESIDE, before + BESIDE
+
 
 @dataclass(frozen=True)
 class Sight:
@@ -235,16 +243,16 @@ def _side_of(placed: Placed, hand: Array) -> tuple[float, Array]:
     return np.inf if out.max() < -IN_IT else float(np.linalg.norm(np.maximum(out, 0.0))), outward
 
 
-def liking(motion: Motion, shot: Shot) -> Array:
-    """How much each yaw shows of the body: three-quarter views of a face, long sides of who lies or walks. (16,)."""
+def liking(motion: Motion, shot: Shot, yaws: Array = YAWS) -> Array:
+    """How much each yaw shows of the body: three-quarter views of a face, long sides of who lies or walks. (N,)."""
     turn = motion.local_rotations[shot.frame, 0].astype(np.float64)
     ahead, up = rotations.rotate(turn, np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]))
     if abs(up[1]) < 0.5:
         along = np.arctan2(up[0], up[2])
-        return np.asarray(np.abs(np.sin(YAWS - along)) * 0.6)
+        return np.asarray(np.abs(np.sin(yaws - along)) * 0.6)
     facing = np.arctan2(ahead[0], ahead[2])
     best = 1.2 if shot.ghosts else 0.8
-    return np.asarray(np.cos(np.abs(rotations.wrap(YAWS - facing)) - best) * 0.6)
+    return np.asarray(np.cos(np.abs(rotations.wrap(yaws - facing)) - best) * 0.6)
 
 
 def visible_share(objects: Sequence[Placed], eye: tuple[float, float, float], points: Array) -> float:

@@ -27,7 +27,7 @@ ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "c
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
 
-WORKED_AT = 0.25
+WORKED_AT = 0.12
 """What a body is as near to is part of what it does (metres)."""
 REACH = 4.5
 """What is farther from the body, or from what a camera looks at, is of no picture of it (metres)."""
