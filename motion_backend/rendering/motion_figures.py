@@ -22,6 +22,7 @@ from motion_backend.walls import Side
 if TYPE_CHECKING:
     from motion_backend.motion import Motion
     from scene_graphs.home import Home
+    from scene_graphs.layout import Placed
 
 ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "ceiling")
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
@@ -120,6 +121,24 @@ def body_solids(motion: Motion, frames: Sequence[int], opacity: float = 1.0, rol
 
 
 @dataclass(frozen=True)
+class Borne:
+    """A piece of furniture that stands tall against walls."""
+
+    placed: Placed
+    walls: tuple[Side, ...]
+
+    def is_behind(self, eye: NDArray[np.floating]) -> bool:
+        """Whether an eye (3,) is beyond one of the walls."""
+        return any(not side.faces(eye[[0, 2]]) for side in self.walls)
+
+    def is_worked_at(self, points: NDArray[np.floating]) -> bool:
+        """Whether any of the points (N, 3) of a body are at it."""
+        here, half = self.placed.to_local(points), np.array(self.placed.size) / 2
+        away = np.maximum(np.abs(here - [0.0, half[1], 0.0]) - half, 0.0)
+        return bool(np.linalg.norm(away, axis=1).min() < WORKED_AT)
+
+
+@dataclass(frozen=True)
 class Prop:
     """One mesh of a home, ready to draw."""
 
@@ -134,17 +153,16 @@ class Prop:
     """The wall it is part of."""
     stump: Solid | None = None
     """What is left of a wall where it would stand in the way."""
-    borne: tuple[Side, ...] = ()
-    """The walls that it stands tall against."""
+    borne: Borne | None = None
+    """What it is part of, if that stands tall against a wall."""
 
     def stands_before(self, camera: Camera, points: NDArray[np.floating], room: int | None) -> bool:
         """Whether a camera leaves it away to see points (N, 3) in a room, as a doll's house is open in front."""
         eye = np.asarray(camera.eye)
         if self.side is not None and self.side.crosses(eye[[0, 2]], points[:, [0, 2]]):
             return True
-        if any(not side.faces(eye[[0, 2]]) for side in self.borne):
-            away = np.maximum(np.maximum(self.low - points, points - self.high), 0.0)
-            return bool(np.linalg.norm(away, axis=1).min() > WORKED_AT)
+        if self.borne is not None and self.borne.is_behind(eye):
+            return not self.borne.is_worked_at(points)
         if self.room == room:
             return self.side is not None and not self.side.faces(eye[[0, 2]])
         nearer = (np.asarray(camera.target) - (self.low + self.high) / 2) @ camera.axes[2]
@@ -161,7 +179,8 @@ def home_props(home: Home) -> list[Prop]:
         for mesh in stump_meshes(home)
     }
     sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
-    borne = {placed.id: tuple(side for side in sides if side.bears(placed)) for placed in home.objects}
+    against = ((placed, tuple(side for side in sides if side.bears(placed))) for placed in home.objects)
+    borne = {placed.id: Borne(placed, walls) for placed, walls in against if walls}
     props = []
     for mesh in home_meshes(home):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
@@ -172,8 +191,8 @@ def home_props(home: Home) -> list[Prop]:
         casts = not mesh.name.startswith(SHADOWLESS)
         solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=opacity, casts=casts)
         room = side.room if side else home.room_at(middle)
-        against = borne.get(mesh.name.partition(":")[0], ())
-        props.append(Prop(mesh.name, solid, low, high, room, side, stumps.get(mesh.name), against))
+        piece = borne.get(mesh.name.partition(":")[0])
+        props.append(Prop(mesh.name, solid, low, high, room, side, stumps.get(mesh.name), piece))
     return props
 
 
