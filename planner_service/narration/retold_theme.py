@@ -73,8 +73,10 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     """A theme in the past, told of a voice's person."""
     theme = re.sub(r"(?<!\.)\.\.(?!\.)", ".", prose_of(theme))
     clauses = clauses_of_text(theme)
-    ordered = clauses[:1] and not clauses[0].subject and clauses[0].text.split()[0].lower() == clauses[0].verb
-    hero = hero_of(clauses) or ("you" if ordered else "")  # "Hide under the table, then crawl out"
+    hero = hero_of(clauses)
+    order = next((one for one in clauses if not one.subject and one.text.split()[0].lower() == one.verb), None)
+    ordered = order is not None and (order is clauses[0] or not hero)
+    hero = hero or ("you" if ordered else "")  # "Hide under the table, then crawl out"
     own = called(clauses, hero) or hero.lower()
     told = Retelling(tokens_of_theme(theme))
     told.stretches = [_with_verb(one, beats, clauses) for one in located(told.tokens, beats)]
@@ -202,7 +204,7 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
     if word == "mean" and before in _PLURAL and follows == "to":
         return "meant"
-    acts = before in _PLURAL or (head and (is_plural(before) or follows in grammar().marks))
+    acts = before in _PLURAL or (head and (is_plural(before) or follows in grammar().marks | _TAKEN))
     form, how = form_of(word), is_adjective(word) and not acts
     base = word in bases(word) and not (how or _is_noun(word, before))
     if form == "present":

@@ -9,8 +9,17 @@ import re
 from functools import lru_cache
 from typing import Final
 
-from planner_service.themes.lexicon import is_adjective, kinds_of, lemma_of, participle, verb_of
+from planner_service.themes.lexicon import (
+    is_adjective,
+    is_noun,
+    is_third_person,
+    kinds_of,
+    lemma_of,
+    participle,
+    verb_of,
+)
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.verb_finder import names
 
 _QUOTED: Final = r"(?P<quoted>“[^”]*”|\"[^\"]*\")"
 _SLUG: Final = re.compile(
@@ -45,8 +54,8 @@ _ROLE: Final = re.compile(
 """Whom notes call so without an article."""
 _REQUEST: Final = re.compile(
     r"^(?:(?:hey|hi|hello|ok(?:ay)?|so|please|pls|um|well|yo)[,!]? )*"
-    r"(?:(?:can|could|would|will) (?:you|u|ya) (?:please |pls )?|please |pls |i(?:'d| would)? (?:want|like|need)(?: you)?"
-    r"(?: to (?:see )?)?|let's )?(?:make|do|write|show|create|film|animate|generate|tell|give|see|have)?"
+    r"(?:(?:can|could|would|will) (?:you|u|ya) (?:please |pls )?|please |pls "
+    r"|i(?:'d| would)? (?:want|like|need)(?: you)?(?: to (?:see )?)?|let's )?(?:make|do|write|show|create|film|animate|generate|tell|give|see|have)?"
     r"(?: me| us)?(?: an?| one| the| some)?(?: \w+){0,2}?(?:(?<=one)| (?:story|film|movie|scene|video|clip|animation))"
     r" (?:where|in which|about how|about|of)\s+(?:(?P<who>(?:an?|my|the) (?:\w+ ){1,3}?)who )?",
     re.IGNORECASE,
@@ -56,7 +65,7 @@ _OPENING: Final = re.compile(
     r"^(?:(?:so,? )?basically|ok(?:ay)?,? so|so like|like|imagine(?: this)?:|picture this:)[,:]? ", re.IGNORECASE
 )
 _CLOSING: Final = re.compile(
-    r"[ ,]+(?:lol|lmao|haha(?:ha)*|xd|etc|pls|please|thx|thanks)\b(?=[.!]*\s*$)", re.IGNORECASE
+    r"(?: (?:lol|lmao|haha(?:ha)*|xd|pls|thx)|, ?(?:please|thanks|etc))\b(?=[.!]*\s*$)", re.IGNORECASE
 )
 _TWICE: Final = re.compile(
     r"(?:(?<=^)|(?<=[.!?;] ))((?:the|my|our|an?|his|her|their) (?:\w+ )?(\w+)) (?:he|she) (?=(\w+))", re.IGNORECASE
@@ -69,6 +78,12 @@ _SHORT: Final = re.compile(
 _ENDINGS: Final = {"m": "am", "re": "are", "ve": "have", "ll": "will"}
 _STATE: Final = re.compile(r"\b((?:[Tt]he|[Hh]is|[Hh]er|[Tt]heir|[Mm]y) \w+)['’]s (?=(\w+)(?:[.,;!?]| and\b| but\b|$))")
 """How a thing is: "the floor's wet, the mop's broken"."""
+_POSED: Final = re.compile(
+    r"(?:(?<=^)|(?<=[.!?;] ))(?P<who>[A-Z]\w+(?:, [^.!?,]+,)*) (?P<how>asleep|awake|alone|back|\w+ing)\b(?P<rest>[^.!?]*)"
+)
+"""Somebody and how they are, as screenplays tell it: "Leo | asleep on the couch"."""
+_ME: Final = re.compile(r"^me (?P<when>(?:at|on|in|after|every) [^,]*? )?(?P<doing>\w+ing)\b", re.IGNORECASE)
+"""What somebody says of themself: "me at 3am eating cheese"."""
 _TEXTED: Final = {"u": "you", "ur": "your"}
 
 
@@ -83,6 +98,7 @@ def prose_of(theme: str) -> str:
     text = _CLOSING.sub("", _OPENING.sub("", _REQUEST.sub(lambda one: one["who"] or "", text)))
     text = re.sub(r"\b(?:u|ur)\b", lambda one: _TEXTED[one[0]], text)
     text = _TWICE.sub(_once, text)
+    text = _POSED.sub(_posed, _ME.sub(lambda one: f"{one['when'] or ''}I am {one['doing']}", text))
     text = _STATE.sub(lambda one: f"{one[1]} is " if is_adjective(one[2].lower()) else one[0], text)
     return _SHORT.sub(_written_out, text).strip() or theme
 
@@ -109,6 +125,17 @@ def _labelled(one: re.Match[str]) -> str:
     if one["who"]:
         return f"There is {told}"
     return f"The scene is {told}" if one["where"] else told[:1].upper() + told[1:]
+
+
+def _posed(one: re.Match[str]) -> str:
+    """A sentence with its verb, where it has none and somebody's name opens it."""
+    who, how = one["who"].split(",")[0].lower(), one["how"]
+    acts = any(is_third_person(word) and not is_noun(word) for word in re.findall(r"[a-z]+", one["rest"]))
+    gerund = how.endswith("ing") and verb_of(how) and not is_adjective(how) and not is_noun(how)
+    named = who in names() or not kinds_of(who)
+    return (
+        f"{one['who']} is {how}{one['rest']}" if named and not acts and (gerund or not how.endswith("ing")) else one[0]
+    )
 
 
 def _once(one: re.Match[str]) -> str:

@@ -322,7 +322,8 @@ def _may_live(subject: str) -> bool:
     """Whether a subject that is no known person may be one: no thing, animal or weather."""
     head = head_of(subject)
     lifeless = theme_words()["no_heroes"] | theme_words()["body"] | frozenset(things()) | grammar().subjects
-    return not is_known(head) and lifeless.isdisjoint((head.lower(), lemma_of(head)))
+    near = subject.lower().split(f" {head.lower()}")[0].split()[-1:]  # "a power cut"
+    return not is_known(head) and lifeless.isdisjoint((head.lower(), lemma_of(head), *near))
 
 
 def _stands_for(subject: str) -> bool:
