@@ -56,7 +56,7 @@ def _is_when_or_none(clause: Clause) -> bool:
 
 
 def _is_there(clause: Clause) -> bool:
-    """Whether words without a verb tell what lies or stands where: "Three cups on the table", not "Keys in the bowl"."""
+    """Whether words without a verb tell what lies where: "Three cups on the table", not "Keys in the bowl"."""
     noun, place, _ = (*_PLACED.split(clause.text, maxsplit=1), "", "")[:3]
     words = [token.low for token in tokens_of(noun)]
     counted = words[:1] and (words[0].split("-")[0] in grammar().numbers | {"a", "an", "one"} or words[0].isdigit())

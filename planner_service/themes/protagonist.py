@@ -160,7 +160,7 @@ def pronouns_of(subject: str) -> str:
 def _not_names() -> frozenset[str]:
     words = grammar()
     return theme_words()["capitals"].union(
-        words.marks, words.subjects, words.prepositions, words.joints, words.adverbs, words.auxiliaries
+        words.marks, words.subjects, words.prepositions, words.joints, words.adverbs, words.auxiliaries, words.numbers
     )
 
 
