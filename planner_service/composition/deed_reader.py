@@ -110,6 +110,7 @@ TEMPTING: Final = {
         "dancing": "dance dancer music song record radio twirl spin party",
         "phone": "phone telephone mobile call caller dial hello voicemail line",
         "listening to music": "music song radio record headphone headphones album concert playlist",
+        "typing": "type computer laptop keyboard email mail code report essay novel letter message write writer screen pc",
         "controller": "game controller console joystick round level",
     }.items()
 }

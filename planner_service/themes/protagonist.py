@@ -205,8 +205,8 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
-    living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     by_pronoun = _deeds_by(clauses, ("he", "she"))
+    living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     less = {who for who, times in by_pronoun.items() if 2 * times < by_pronoun[pronoun]}
     people.sort(key=lambda one: (bool(pronoun) and _is_several(one.subject), one.subject.lower() in less,
                                  one.sentence, one.place))  # fmt: skip
