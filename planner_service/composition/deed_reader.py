@@ -103,6 +103,18 @@ TOUCHES: Final = (
 IN_HANDS: Final = ("phone", "piano", "controller", "typing", "writing", "eating", "drinking", "book", "music")
 """Parts of captions in which hands are seen with a thing."""
 _INSTRUMENTS: Final = frozenset((*things_called("instrument"), "piano", "keyboard", "organ"))
+TEMPTING: Final = {
+    part: frozenset(words.split())
+    for part, words in {
+        "piano": "piano keyboard organ music song melody chord scale key note",
+        "dancing": "dance dancer music song record radio twirl spin party",
+        "phone": "phone telephone mobile call caller dial hello voicemail line",
+        "listening to music": "music song radio record headphone headphones album concert playlist",
+        "typing": "type computer laptop keyboard email mail code report essay novel letter message write writer screen pc",
+        "controller": "game controller console joystick round level",
+    }.items()
+}
+"""Captions whose thing or way everybody knows, with the words that tell of it."""
 _PLAYS: Final = ("play", "practise", "practice", "strum", "tune", "perform", "pluck")
 """Verbs of what is done with the instrument that was named last."""
 _THINGS: Final = re.compile(
@@ -159,13 +171,18 @@ class DeedReader:
     _fitting: dict[str, Likely] = field(default_factory=dict)
     """Those of them without what a caption must not be played for."""
     _nevers: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    _about: dict[str, set[str]] = field(default_factory=dict)
+    """The words of each clause and of all before it."""
     _instruments: dict[str, str] = field(default_factory=dict)
     """Of clauses that play something: what was named last that can be played."""
 
     def hear(self, read: Sequence[ReadBeat]) -> None:
         """Think about the clauses of beats as they follow each other, all at once."""
         named = ""
+        about: set[str] = set()
         for one in read:
+            about |= {*one.clause.lemmas, *map(lemma_of, one.clause.subject.lower().split())}
+            self._about[one.clause.text] = {*about}
             named = next((word for word in one.clause.lemmas if word in _INSTRUMENTS), named)
             if one.clause.verb in _PLAYS and named:
                 self._instruments[one.clause.text] = named
@@ -186,14 +203,23 @@ class DeedReader:
         if known is not None and clause.text not in self._fitting:
             never = self._never(clause)
             others = IN_HANDS if never and self._misled(clause) else ()
-            kept = {one: p * _may_be(one, never, others, clause) for one, p in known.captions.items()} if never else {}
-            self._fitting[clause.text] = replace(known, captions=kept) if never else known
+            tempting = self._tempting(clause)
+            kept = {
+                one: p * (_may_be(one, never, others, clause) and not _only_tempts(one, tempting, clause))
+                for one, p in known.captions.items()
+            }
+            self._fitting[clause.text] = replace(known, captions=kept)
         return self._fitting.get(clause.text)
 
     def _misled(self, clause: Clause) -> bool:
         """Whether what is likeliest to show a clause must not be played for it."""
         known = self._known.get(clause.text)
         return known is not None and any(part in known.best[1] for part in self._never(clause))
+
+    def _tempting(self, clause: Clause) -> tuple[str, ...]:
+        """Parts of captions of what nobody takes for anything else, where no words tell of it: nobody plays the piano
+        for what a violinist does, nor dances with a box."""
+        return tuple(part for part, words in TEMPTING.items() if words.isdisjoint(self._about.get(clause.text, ())))
 
     def _never(self, clause: Clause) -> tuple[str, ...]:
         """Parts of captions that must not be played for a clause, nor for the instrument that is played in it."""
@@ -374,6 +400,11 @@ def _may_be(caption: tuple[Skill, str], never: Sequence[str], others: Sequence[s
     if any(part in caption[1] for part in never):
         return False
     return shows(*caption, clause) or not any(part in caption[1] for part in others)
+
+
+def _only_tempts(caption: tuple[Skill, str], tempting: Sequence[str], clause: Clause) -> bool:
+    """Whether a caption has a part that no words tell of."""
+    return any(part in caption[1] for part in tempting) and not shows(*caption, clause, own=True)
 
 
 def _without(deed: Deed | None, never: Sequence[str]) -> Deed | None:

@@ -61,7 +61,7 @@ _AMBIGUOUS: Final = frozenset(("can", "will", "may", "must", "do", "have", "bein
 _SINGULAR: Final = frozenset(("he", "she", "it", "who"))
 _PLURAL: Final = frozenset(("i", "we", "you", "they"))
 """Who does things in verbs' base forms."""
-_ASKS: Final = grammar().auxiliaries | {"what", "which", "how", "where", "why", "who", "when"}
+_ASKS: Final = grammar().auxiliaries | {"what", "which", "how", "where", "why", "who", "whose", "when"}
 """Words that questions begin with."""
 _TAKEN: Final = frozenset(("it", "him", "her", "them", "the", "a", "an", "his", "their", "himself", "herself"))
 """Words that what ends in -s before them does something to: "finds it", "a power cut catches him"."""
@@ -73,8 +73,10 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     """A theme in the past, told of a voice's person."""
     theme = re.sub(r"(?<!\.)\.\.(?!\.)", ".", prose_of(theme))
     clauses = clauses_of_text(theme)
-    ordered = clauses[:1] and not clauses[0].subject and clauses[0].text.split()[0].lower() == clauses[0].verb
-    hero = hero_of(clauses) or ("you" if ordered else "")  # "Hide under the table, then crawl out"
+    hero = hero_of(clauses)
+    order = next((one for one in clauses if not one.subject and one.text.split()[0].lower() == one.verb), None)
+    ordered = order is not None and (order is clauses[0] or not hero)
+    hero = hero or ("you" if ordered else "")  # "Hide under the table, then crawl out"
     own = called(clauses, hero) or hero.lower()
     told = Retelling(tokens_of_theme(theme))
     told.stretches = [_with_verb(one, beats, clauses) for one in located(told.tokens, beats)]
@@ -124,9 +126,10 @@ def _is_present(told: Retelling) -> bool:
     words = [token for token in told.tokens if token.is_word]
     heads = [told.tokens[one.verb] for one in told.stretches if one.verb is not None]
     now = any(
-        before.low in _SINGULAR - {"who", "it"} and (form_of(one.low) == "present" or one.low in ("is", "has", "does"))
-        for before, one in pairwise(words) if one in heads and not one.quoted
-    )  # fmt: skip
+        before.low in ("he", "she") or before.text.istitle()
+        for before, one in pairwise(words)
+        if one in heads and not one.quoted and (form_of(one.low) == "present" or one.low in ("is", "has", "does"))
+    )
     verbs = [told.tokens[one.verb].low for one in told.stretches if one.verb is not None]
     after = sum(verb in _TOLD_IN_PAST or form_of(verb) == "past" for verb in verbs)
     tenseless = sum(form_of(verb) in _TENSELESS for verb in verbs)
@@ -197,12 +200,16 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if (before in _BASE_AFTER and word not in ("is", "are")) or (asked and marked == word and word in bases(word)):
         return None
+    if word == "am" and before != "i":
+        return None  # "7 am"
     if word in story_words().helpers and word not in _TOLD_IN_PAST:
         after = before in SUBJECTS or (head and word in ("have", "do") and before)
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
     if word == "mean" and before in _PLURAL and follows == "to":
         return "meant"
-    acts = before in _PLURAL or (head and (is_plural(before) or follows in grammar().marks))
+    acts = before in _PLURAL or (
+        head and (is_plural(before) or (plain and before == "and") or follows in grammar().marks | _TAKEN)
+    )
     form, how = form_of(word), is_adjective(word) and not acts
     base = word in bases(word) and not (how or _is_noun(word, before))
     if form == "present":
@@ -262,8 +269,9 @@ def _name(voice: Voice, tokens: Sequence[Token], hero: str) -> None:
     place = next(runs_of(tokens, wanted), None)
     for at in place or ():
         tokens[at].is_name = True
-    if place is None or wanted[0] in _NO_ONE_PERSON:
-        return
+    after = next((one.low for one in tokens[place.stop if place else 0 :] if one.is_word), "")
+    if place is None or wanted[0] in _NO_ONE_PERSON or (len(wanted) == 1 and after == "who"):
+        return  # "He who never cried …"
     own = {token.low for token in tokens_of_theme(voice.name) if token.is_word} - grammar().marks
     if not own or own - {*wanted}:  # "a woman" is called "the woman" later
         noun = "".join(token.text for token in tokens[place.start : place.stop])

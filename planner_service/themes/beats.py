@@ -52,9 +52,16 @@ _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
 """By this what had been done belongs to the story: "by noon she had unpacked"."""
 _ASKED: Final = re.compile(r"(?i)(?:please|(?:can|could|would|will) you|tell me|show me|give me|help me)\b")
-_QUESTION: Final = re.compile(r"(?i)(?:what|which|how|where|why|is|are|does|do|can|should)\b[^.!?]*\?")
+_QUESTIONS: Final = re.compile(
+    r"(?i)(?:\s*(?:what|which|how|where|why|who|is|are|does|do|can|could|will|would|should)\b[^.!?]*\?)+"
+)
 _ASKING: Final = frozenset(("", "it", "you", "i", "me", "please"))
 """Who does things in a request, and is nobody whose story it is."""
+_HELD_THERE: Final = re.compile(
+    r"(?:his|her|their|my|one|both) (?:\w+ )?(?:hands?|fingers?|thumb|palms?|wrists?) (?:under|in|on|against) ",
+    re.IGNORECASE,
+)
+"""Where somebody's hands are, without a verb: they hold them there."""
 _SETTLING: Final = frozenset(("sleep", "down", "warm", "comfortable"))
 """What somebody who cannot get it is seen trying to get to: "cannot get to sleep"."""
 _QUOTED: Final = re.compile(r"«\d+»")
@@ -138,7 +145,8 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     _refuse_foreign(text)
     clauses = clauses_of_text(text)
     asks = _ASKED.match(text) and all(one.doer.lower() in _ASKING for one in clauses)
-    if asks or (_QUESTION.fullmatch(text) and not any(is_person(one.doer) for one in clauses)):
+    told = {one.doer.lower() for one in clauses if is_person(one.doer)} - grammar().subjects - {"me", "us"}
+    if asks or (_QUESTIONS.fullmatch(text) and not told):
         raise ThemeError(f"{text[:60]!r} asks for something, and tells of nobody.")
     return read_beats(clauses)
 
@@ -166,6 +174,8 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
     if not clause.verb and (deed := RESTS.match(clause.text)):  # "then a nap"
         verb = lemma_of(deed[0].split()[-1])
         clause = replace(clause, verb=verb, lemmas=(verb, *clause.lemmas[len(deed[0].split()) :]))
+    if not clause.verb and _HELD_THERE.match(clause.text):  # "Her burnt finger under the cold tap"
+        clause = replace(clause, verb="hold", lemmas=("hold", *clause.lemmas), aside=False)
     ours = not of_others and (is_hero(clause.doer, hero, pronoun) or _is_it(clause, hero))
     who = "" if clause.aside or ours else clause.doer
     led = bool(who) and bool(clause.subject) and not clause.text.lower().startswith(who.lower())

@@ -14,6 +14,11 @@ RECALLING: Final = frozenset(("when", "how", "that", "where"))
 """Joints after which it is told what somebody remembers."""
 _USED_TO: Final = re.compile(r"(?:\w+ )?used to \w+|would (?:always|often|sometimes|usually) \w+", re.IGNORECASE)
 """What was done often, and is no more."""
+_YOUNG: Final = re.compile(
+    r"(?:was|were) (?:still |only |very )*(?:small|young|little|a (?:little |small )?(?:child|girl|boy|kid)|\w+ years old)$",
+    re.IGNORECASE,
+)
+"""How somebody was when what is told of that time was done: "when I was small | I hid here"."""
 _TIME: Final = re.compile(
     r"\b(?:day|time|night|evening|morning|summer|winter|spring|autumn|year)s?(?: (?:that|when))?$", re.IGNORECASE
 )
@@ -29,9 +34,11 @@ def recalled_in(clauses: Sequence[Clause]) -> frozenset[int]:
     for at in sorted(range(len(clauses)), key=lambda at: (clauses[at].sentence, clauses[at].place)):
         before = clauses[last] if last is not None else None
         if before is None or before.sentence != clauses[at].sentence:
-            told = _is_habit(clauses[at])
+            told = _is_habit(clauses[at]) or (
+                _YOUNG.match(clauses[at].text) is not None and clauses[at].joint == "when"
+            )
         else:
-            more = last in found and _goes_on(clauses[at], clauses)
+            more = last in found and (_goes_on(clauses[at], clauses) or _YOUNG.match(before.text) is not None)
             told = more or _is_habit(clauses[at]) or _is_recalled(before, clauses[at])
         found.update([at] if told else [])
         last = at

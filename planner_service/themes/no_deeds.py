@@ -24,6 +24,8 @@ _ALONE: Final = re.compile(
 """How it is from the beginning, and nothing that is done: "is home alone"."""
 _ON_SOMEBODY: Final = re.compile(r"\b(?:on|in|around|under) (?:his|her|my) \w+", re.IGNORECASE)
 """Where things are that are no people: "they were on his head"."""
+_PLACED: Final = re.compile(r" (?:on|in|by|under|beside|behind|near|at) (?=(?:the|an?|his|her|their|my|every|each)\b)")
+"""Before where things are."""
 _OF_AGE: Final = frozenset(
     ("year", "old", "now", "almost", "nearly", "already", "just", "only", "month", "today", "be")
 )
@@ -53,8 +55,20 @@ def _is_when_or_none(clause: Clause) -> bool:
     return bool(told & (words["weather"] | words["told_times"] | _NONE))
 
 
+def _is_there(clause: Clause) -> bool:
+    """Whether words without a verb tell what lies where: "Three cups on the table", not "Keys in the bowl"."""
+    noun, place, _ = (*_PLACED.split(clause.text, maxsplit=1), "", "")[:3]
+    words = [token.low for token in tokens_of(noun)]
+    counted = words[:1] and (words[0].split("-")[0] in grammar().numbers | {"a", "an", "one"} or words[0].isdigit())
+    known = words and (lemma_of(words[-1]) in things() or is_known(words[-1]))
+    return bool(place and counted and known and not clause.verb)
+
+
 def is_state(clause: Clause) -> bool:
-    """Whether two words tell how a thing is: "Fridge empty", "Socks impossible", not "Shoes off" or "Door locked"."""
+    """Whether two words tell how a thing is: "Fridge empty", "Socks impossible", not "Shoes off" or "Door locked"; or
+    more of them where it is."""
+    if _is_there(clause):
+        return True
     words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalpha()]
     thing, how = words if len(words) == 2 else ("", "")
     done = how in _PUT or participle(verb_of(how) or "be") == how

@@ -160,7 +160,7 @@ def pronouns_of(subject: str) -> str:
 def _not_names() -> frozenset[str]:
     words = grammar()
     return theme_words()["capitals"].union(
-        words.marks, words.subjects, words.prepositions, words.joints, words.adverbs, words.auxiliaries
+        words.marks, words.subjects, words.prepositions, words.joints, words.adverbs, words.auxiliaries, words.numbers
     )
 
 
@@ -205,8 +205,8 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     opening = ("a ", "an ", "one ", "my ", "our ", "the ")
     called = not people and " " not in "".join(mains[:1]) and is_name("".join(mains[:1]))  # "Rose", "Wen"
     sooner = [(one.sentence, one.place) < first for one in told if one.joint in _MAIN_JOINTS][:1] == [True]
-    living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     by_pronoun = _deeds_by(clauses, ("he", "she"))
+    living = [one for one in mains[:1] if sooner and (called or one.lower().startswith(opening)) and _may_live(one)]
     less = {who for who, times in by_pronoun.items() if 2 * times < by_pronoun[pronoun]}
     people.sort(key=lambda one: (bool(pronoun) and _is_several(one.subject), one.subject.lower() in less,
                                  one.sentence, one.place))  # fmt: skip
@@ -322,7 +322,8 @@ def _may_live(subject: str) -> bool:
     """Whether a subject that is no known person may be one: no thing, animal or weather."""
     head = head_of(subject)
     lifeless = theme_words()["no_heroes"] | theme_words()["body"] | frozenset(things()) | grammar().subjects
-    return not is_known(head) and lifeless.isdisjoint((head.lower(), lemma_of(head)))
+    near = subject.lower().split(f" {head.lower()}")[0].split()[-1:]  # "a power cut"
+    return not is_known(head) and lifeless.isdisjoint((head.lower(), lemma_of(head), *near))
 
 
 def _stands_for(subject: str) -> bool:

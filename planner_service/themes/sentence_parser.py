@@ -482,7 +482,8 @@ def _starts_subject(words: Sequence[str], place: int) -> bool:
     before, word = words[place - 1], words[place]
     if before.lower() in NAMING | {"and"} | (theme_words()["people"] if place > 1 else frozenset()):
         return False  # "a robot named | Bolt", "Marta and | her husband", "her husband | Tom"
-    is_start = word.lower() in grammar().marks or (word[:1].isupper() and not before[:1].isupper())
+    day = before.lower() in grammar().times  # "on Wednesday | Hester"
+    is_start = word.lower() in grammar().marks or (word[:1].isupper() and (day or not before[:1].isupper()))
     return is_start and before.lower() not in grammar().marks | grammar().prepositions
 
 

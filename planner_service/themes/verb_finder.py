@@ -191,7 +191,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
 
 def _counts(word: str) -> bool:
     """Whether a word tells how many or what of the noun behind it: "thirty-one", "12", "wet", nobody's name."""
-    return word.isdigit() or word.split("-")[0] in grammar().numbers or (is_adjective(word) and word not in names())
+    stands_alone = word in names() | grammar().marks | {"one"}
+    return word.isdigit() or word.split("-")[0] in grammar().numbers or (is_adjective(word) and not stands_alone)
 
 
 def calls(tokens: Sequence[Token], place: int) -> bool:
@@ -234,6 +235,9 @@ def _opens(word: str, base: str, after: str) -> bool:
     lies_there = lemma_of(word) in things().keys() - theme_words()["body"] - {"switch"}
     if lies_there and is_noun(word) and after in (_WHERE if word != base else grammar().prepositions):
         return False  # "Bag on the bed.", "cups in the sink"
+    poses = grammar().postures | theme_words()["state_verbs"]
+    if is_noun(word) and is_third_person(word) and after.endswith("ed") and base not in poses:
+        return False  # "results unopened in her bag"
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
         return not names or is_adjective(after)

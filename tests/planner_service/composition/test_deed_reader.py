@@ -232,3 +232,23 @@ def test_when_it_was_done_says_nothing_of_what_is_done() -> None:
     heard = Scripted(likely())
     DeedReader(cast(BeatClassifier, heard)).hear(read)
     assert [text for text, _ in heard.asked] == ["slams the cupboard", "drinks"]
+
+
+@pytest.mark.parametrize(
+    ("theme", "caption", "is_played"),
+    [
+        ("She tunes each string.", "piano", False),
+        ("He drags it down to the rug.", "dancing", False),
+        ("Ring box in the left pocket.", "phone", False),
+        ("The piano is open. Her fingers find the first bars.", "piano", True),
+        ("The music starts. She glides about.", "dancing", True),
+        ("The phone is on the table. He murmurs for an hour.", "phone", True),
+    ],
+)
+def test_what_everybody_knows_is_played_only_where_words_tell_of_it(theme: str, caption: str, is_played: bool) -> None:
+    read = beats_of(theme)
+    ours = reader(likely(**{caption: 0.99}))
+    ours.hear(read)
+    thought = ours.likely(read[-1].clause)
+    assert thought is not None
+    assert (caption in thought.best[1]) is is_played

@@ -26,6 +26,7 @@ from narration.hand_made_scripts import (
 )
 
 from motion_backend.motion import Character, Skill
+from planner_service.evaluation.labels import labelled_themes
 from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.structured_output import ModelAnswerError
 from planner_service.narration.keyframe_phrases import Variety, templates, touches
@@ -34,13 +35,14 @@ from planner_service.narration.narrative_voice import Voice, tells_of_one
 from planner_service.narration.narrator import narrate
 from planner_service.narration.retold_theme import retell
 from planner_service.narration.story_words import title_of
-from planner_service.narration.tense import bases, in_past
+from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.narration.told import Told
 from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import BeatKind, Keyframe, LongScript, PlannedKeyframe
 from planner_service.themes.beats import beats_of
 from planner_service.themes.lexicon import gerund, past, third_person
+from planner_service.themes.prose import prose_of
 from planner_service.themes.protagonist import cast_by
 from scene_graphs.furniture import catalogue, display_name
 
@@ -390,10 +392,50 @@ def retold(theme: str, voice: Voice = SHE) -> str:
         ("One sings, the other washes up.", "One sang, the other washed up."),
         ("Socks impossible. Ana sits down.", "Socks impossible. Ana sat down."),
         ("I hoover and wait.", "Ana hoovered and waited."),
+        ("A power cut catches her. She sits down.", "A power cut caught her. Ana sat down."),
+        ("Ana with stiff fingers takes the case and opens it.", "Ana with stiff fingers took the case and opened it."),
+        ("The light moves, the rain stops. Ana finds it.", "The light moved, the rain stopped. Ana found it."),
+        ("They search the desk, the shelf and the bag, and end at the mirror.",
+         "Ana searched the desk, the shelf and the bag, and ended at the mirror."),
+        ("You find a candle and light it. The lamps go on.", "Ana found a candle and lit it. The lamps went on."),
+        ("I've been ill for weeks. Then I cried.", "Ana had been ill for weeks. Then she cried."),
+        ("The keys are gone. They were here. Ana sits down.", "The keys were gone. They were here. Ana sat down."),
+        ("It was Sunday. She wakes and is glad.", "It was Sunday. Ana woke and was glad."),
     ],
-)
+)  # fmt: skip
 def test_a_theme_is_told_in_its_own_words_in_the_past(theme: str, told: str) -> None:
     assert retold(theme) == told
+
+
+@for_each(
+    "theme",
+    [
+        "Thirty-one essays on the table. Wet footprints on the rug. Ana sat down.",
+        "Books on the shelf, cups in the sink, bed made, floor swept. Ana sat down.",
+        "Back home, results unopened in her bag, Ana sat down.",
+        "What would you do? Can you tell? Whose keys are these? Ana sat down.",
+        "Is it late? Ana sat down at 7 am and said a few words of thanks.",
+    ],
+)
+def test_what_is_no_verb_or_is_asked_of_nobody_stays(theme: str) -> None:
+    assert retold(theme) == theme
+    assert retold(theme.replace("sat", "sits").replace("said", "says")) == theme
+
+
+@for_each("theme", [one.theme for one in labelled_themes() if not one.refuse])
+def test_no_sentence_is_told_half_in_the_past(theme: str) -> None:
+    """Nobody does something, in a form that can be nothing but a present, beside what we put into the past."""
+    prose, told = prose_of(theme), retold(theme, THEY)
+    for before, after in zip(re.split(r"(?<=[.!?]) ", prose), re.split(r"(?<=[.!?]) ", told), strict=False):
+        plain = re.sub(r"“[^”]*”|\"[^\"]*\"", "", after)
+        present = re.findall(
+            r"\b(?:[Hh]e|[Ss]he|[Ii]t|[Tt]hey|Sam) (?:\w+ly )?(is|are|has|does|\w+[a-z]s)\b(?! \?)", plain
+        )
+        finite = [word for word in present if form_of(word) == "present" or word in ("is", "are", "has", "does")]
+        assert before == after or not finite, after
+        assert not re.search(r"\bSam (?:been|am|were|are|have)\b|\b(\w+) \1's?\b(?<!had had)(?<!that that)", plain), (
+            after
+        )
 
 
 @for_each(
