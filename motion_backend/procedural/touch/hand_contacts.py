@@ -137,4 +137,4 @@ def palm_on(normal: Array, facing: float, hand: str) -> Array:
 def on_edge(palm: Array, hand: str) -> Array:
     """The same hand (4,) turned half on its edge, the thumb off the surface: so it is held in knocking. (4,)."""
     side = 1.0 if hand == "left" else -1.0
-    return rotations.compose(palm, rotations.axis_to_quat("x", side * EDGEWISE))
+    return rotations.compose(palm, rotations.axis_to_quat("x", np.asarray(side * EDGEWISE)))

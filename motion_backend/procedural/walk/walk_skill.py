@@ -251,8 +251,8 @@ def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
 
 
 def _where_legs_swing(body: Body) -> float:
-    """The yaw nearest to where the body looks in which a leg that is flung forwards meets nothing, else the one in which
-    it is least deep in something."""
+    """The yaw nearest to where the body looks in which a leg that is flung forwards meets nothing, else the one in
+    which it is least deep in something."""
     solid, scale = body.scene.obstacles.solid(), body.skeleton.scale
     yaws = body.yaw + np.array(SWING_TURNS)
     aside, up, ahead = np.meshgrid(*SWINGS, indexing="ij")
