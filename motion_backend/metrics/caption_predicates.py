@@ -146,8 +146,8 @@ def kept_share(verdicts: Iterable[Verdict | None]) -> float | None:
 
 
 def shown(motion: Motion, action: Action) -> Motion:
-    """The frames that show a caption: the hold of a pose, the hand at its goal, the way of a walk, all of a rise; of who
-    turns before doing something on the spot, that.
+    """The frames that show a caption: the hold of a pose, the hand at its goal, the way of a walk, all of a rise; of
+    who turns before doing something on the spot, that.
 
     What is picked up or turned on shows once the hand has left, what is put down or slammed before it is there.
     """

@@ -120,7 +120,7 @@ class Hands:
         near = np.clip((POURED_FROM * self.scale - away) / (POURED_WITHIN * self.scale), 0.0, 1.0)
         angle = near * np.clip(POURED_LEVEL + POURED_RATIO * back, 0.0, POURED_MOST)
         level = rotations.normalize(to_mouth * [1.0, 0.0, 1.0])
-        return np.cos(angle) * UP + np.sin(angle) * level
+        return np.asarray(np.cos(angle) * UP + np.sin(angle) * level)
 
     def _in_head(self, place: tuple[float, float, float]) -> Array:
         return self.head_at + rotations.rotate(self.head, self.scale * np.array(place))

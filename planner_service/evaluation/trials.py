@@ -201,8 +201,8 @@ def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> 
 
 
 def _handled(caption: str, placed: Placed, spot: Spot) -> bool:
-    """Whether what hands do in a caption is done at such a piece: nobody washes a chair, turns a ceiling lamp, stirs on a
-    mattress or knocks on a screen."""
+    """Whether what hands do in a caption is done at such a piece: nobody washes a chair, turns a ceiling lamp, stirs on
+    a mattress or knocks on a screen."""
     doing, kind = handling_of(caption), furniture.class_of(placed.category)
     if doing and (kind in _SAT_ON or placed.category in _HUNG):
         return False

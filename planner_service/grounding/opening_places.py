@@ -64,8 +64,8 @@ class OpeningPlace:
         return wrap(self.facing + np.pi)
 
     def spot(self, height: str, scale: float, knocked: bool = False) -> Spot:
-        """Where a hand goes: on a door to its handle, or over it where it is `knocked` on, on a window to a height (low,
-        medium or high) of a body of `scale` times 1.70 m."""
+        """Where a hand goes: on a door to its handle, or over it where it is `knocked` on, on a window to a height
+        (low, medium or high) of a body of `scale` times 1.70 m."""
         low, high = self.opening.bottom + _EDGE, self.opening.top - _EDGE
         y = float(np.clip((KNOCKED if knocked else _HAND[height]) * scale, low, max(low, high)))
         y = HANDLE_HEIGHT if self.kind == "door" and not knocked else y

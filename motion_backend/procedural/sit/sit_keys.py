@@ -118,6 +118,8 @@ class Lower:
     """What the key poses down to a seat have in common."""
 
     time_s: float
+    plump_quicker_share: float
+    """How much sooner than in that time who plumps down is there, the farther down the more."""
     lean_rad: float
     lean_per_depth_rad: float
     low_tuck_share: float

@@ -60,6 +60,8 @@ BEHIND = 0.02
 """A foot that is so much nearer to the pelvis lies behind the other's shin (metres)."""
 SINK = 0.014
 """How deep one who plumps down sinks into the seat before it gives back (metres)."""
+PLUMPS = 0.4
+"""Who plumps down by no more than this (see `Manner`) comes down in the usual time."""
 MIN_GLANCE = 0.2
 """Who would look back less than this (see `Manner`) does not look."""
 SEAT_DROP, MIN_DEPTH, MAX_DEPTH = 0.4, 0.6, 2.0
@@ -170,7 +172,9 @@ def lower_onto(start: Pose, seat: Seat, style: Seated, felt: Holds, skeleton: Sk
         for pose, row in zip(poses[:-1], keys.pose[:-1], strict=True)
     ]
     seconds = keys.lower.time_s * (1 / style.bearing.tempo) * (ANY_DEPTH + EACH_DEPTH * depth)
-    times = [0.0, *(row.time_share * seconds for row in keys.pose)]
+    # Who plumps down lets go: the farther down, the quicker.
+    quicker = keys.lower.plump_quicker_share * max(style.manner.plump - PLUMPS, 0.0) / (1 - PLUMPS)
+    times = [0.0, *(row.time_share * (1 - quicker * row.time_share) * seconds for row in keys.pose)]
     down = interpolate(times, [start, *before, contact], FPS)
     over, turned = knees_over_feet(down), smooth(np.arange(1, len(down) + 1) / (KNEES_TURN * FPS))
     return replace(down, knees=start.knees + turned[:, None, None] * (over - start.knees))

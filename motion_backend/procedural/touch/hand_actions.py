@@ -252,8 +252,8 @@ def _wash(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
 
 
 def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
-    """A grip that is turned about what it holds, let go of it, and taken anew, again and again as a lid is unscrewed; the
-    elbow goes up and down with it, and the trunk along."""
+    """A grip that is turned about what it holds, let go of it, and taken anew, again and again as a lid is unscrewed;
+    the elbow goes up and down with it, and the trunk along."""
     row = keys.rotate
     time, ease, held = _held(there, seconds, keys.ease_s)
     if way.grip is None:
@@ -277,8 +277,8 @@ def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
 
 
 def _ratchet(row: Rotate, time: Array) -> tuple[Array, Array]:
-    """A turn of unit size at times (T,), slowly there and quickly back, from its middle on; and how far the hand has let
-    go, 0 to 1, on the way back."""
+    """A turn of unit size at times (T,), slowly there and quickly back, from its middle on; and how far the hand has
+    let go, 0 to 1, on the way back."""
     phase = (row.turn_hz * time + row.turning_share / 2) % 1.0
     back = np.clip((phase - row.turning_share) / (1 - row.turning_share), 0.0, 1.0)
     there = np.minimum(phase / row.turning_share, 1.0)

@@ -37,7 +37,7 @@ ON_TOPS: Final = frozenset({"pick", "put", "stir", "pour"})
 KNOCKED, KNOCKED_FROM, HIGHER = 1.36, 1.15, 0.04
 """Who knocks on a front does so this high, where it goes up so far, else lower in such steps, but no lower than the
 second (metres at 1.70 m)."""
-EDGEWISE: Final = 1.0
+EDGEWISE: Final = 0.7
 """How far a hand that knocks is turned about its fingers, the palm to the body's middle (radians)."""
 KNUCKLES: Final = 0.07
 """About the middle of a hand that knocks, so much of the front is there (metres)."""
@@ -137,4 +137,4 @@ def palm_on(normal: Array, facing: float, hand: str) -> Array:
 def on_edge(palm: Array, hand: str) -> Array:
     """The same hand (4,) turned half on its edge, the thumb off the surface: so it is held in knocking. (4,)."""
     side = 1.0 if hand == "left" else -1.0
-    return rotations.compose(palm, rotations.axis_to_quat("x", side * EDGEWISE))
+    return rotations.compose(palm, rotations.axis_to_quat("x", np.asarray(side * EDGEWISE)))

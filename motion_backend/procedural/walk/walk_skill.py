@@ -251,8 +251,8 @@ def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
 
 
 def _where_legs_swing(body: Body) -> float:
-    """The yaw nearest to where the body looks in which a leg that is flung forwards meets nothing, else the one in which
-    it is least deep in something."""
+    """The yaw nearest to where the body looks in which a leg that is flung forwards meets nothing, else the one in
+    which it is least deep in something."""
     solid, scale = body.scene.obstacles.solid(), body.skeleton.scale
     yaws = body.yaw + np.array(SWING_TURNS)
     aside, up, ahead = np.meshgrid(*SWINGS, indexing="ij")
@@ -285,7 +285,7 @@ def stay(body: Body, part: Part) -> None:
         body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))
         return
     if style.doing in FLUNG:
-        go(body, body.place, _where_legs_swing(body), action)
+        go(body, body.place, _where_legs_swing(body), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
     bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))

@@ -17,7 +17,7 @@ from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics.caption_predicates import judge_caption
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.touch.hand_captions import FINGER, FINGERS, Laid
-from motion_backend.procedural.touch.hand_contacts import free_stroke, palm_on, suits
+from motion_backend.procedural.touch.hand_contacts import KNOCKED, free_stroke, is_top, palm_on, suits, to_knock_on
 from motion_backend.skeleton import HAND_REST, INDEX
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import Home, home_from_layouts
@@ -211,3 +211,66 @@ def test_where_two_hands_have_no_room_one_does_it_and_says_so() -> None:
     motion = act(home_from_layouts([replace(ROOM, objects=(lamp,))], 0), "lamp", "wash with both hands")
     assert [note.words for note in motion.notes] == ["no room for both hands: one hand"]
     assert done("wash with both hands")[0].notes == ()
+
+
+def test_a_knock_is_three_raps_a_pause_in_which_one_listens_and_three_more() -> None:
+    _, _, gap = done("knocking with the right hand")
+    at_it = np.flatnonzero(gap < 0.02)
+    off = gap[at_it[0] : at_it[-1] + 1] > 0.05
+    raps = np.flatnonzero(np.diff(off.astype(int)) == 1)
+    assert len(raps) == 6
+    assert np.diff(raps).argmax() == 2
+    assert np.diff(raps).max() > 2 * np.delete(np.diff(raps), 2).max()
+
+
+def test_one_knocks_on_a_front_at_the_height_of_the_shoulders_and_on_a_table_on_its_top() -> None:
+    wardrobe = Placed("wardrobe", "wardrobe", (4.5, 0.0, 0.35), (1.2, 2.0, 0.6), 0.0)
+    room = replace(ROOM, objects=(*ROOM.objects, wardrobe))
+    home = home_from_layouts([room], 0)
+    solid = Obstacles.of_home(home).solid()
+    for scale in (0.8, 1.0):
+        found = to_knock_on(spots(home.object("0/wardrobe"), "touch"), solid, scale)
+        assert found
+        assert not any(is_top(spot.normal) for spot in found)
+        assert max(spot.point[1] for spot in found if spot.height == "medium") == pytest.approx(KNOCKED * scale)
+    at_table = to_knock_on(spots(home.object("0/table"), "touch"), solid, 1.0)
+    assert at_table
+    assert all(is_top(spot.normal) for spot in at_table)
+
+
+def test_who_knocks_on_a_front_has_the_elbow_below_the_hand() -> None:
+    wardrobe = Placed("wardrobe", "wardrobe", (4.5, 0.0, 0.35), (1.2, 2.0, 0.6), 0.0)
+    home = home_from_layouts([replace(ROOM, objects=(*ROOM.objects, wardrobe))], 0)
+    found = to_knock_on(spots(home.object("0/wardrobe"), "touch"), Obstacles.of_home(home).solid(), 1.0)
+    spot = next(one for one in found if one.height == "medium")
+    walk = Action(Skill.LOCO, "smoothly forward walk", Emotion.NEUTRAL, goal=spot.standing, facing=spot.approach)
+    knock = Action(Skill.TOUCH, "knocking with the right hand", Emotion.NEUTRAL, "wardrobe", "0/wardrobe", spot)
+    motion, _ = DIRECTOR.act(home, knock, after(home, walk))
+    joints = motion.joint_positions().astype(np.float64)
+    there = np.linalg.norm(joints[:, WRIST] - np.array(motion.goals[0].position), axis=1) < 0.03
+    assert there.sum() > motion.fps
+    assert (joints[there, WRIST, 1] - joints[there, INDEX["right_elbow"], 1]).min() > 0.12
+
+
+def test_a_grip_is_let_go_of_on_its_quick_way_back() -> None:
+    motion, _, gap = done("rotate with the right hand")
+    thumb = turned(motion, "right_wrist")
+    yaw = np.unwrap(np.arctan2(thumb[:, 0], thumb[:, 2]))
+    at_it = np.flatnonzero(gap < 0.06)
+    held = slice(at_it[0] + motion.fps // 2, at_it[-1] - motion.fps // 2)
+    turning = np.gradient(yaw[held])
+    quick = turning * np.sign(turning[np.abs(turning).argmax()]) > 0
+    assert 0.25 < quick.mean() < 0.5
+    height = motion.joint_positions()[held, WRIST, 1]
+    assert height[quick].mean() > height[~quick].mean() + 0.01
+
+
+def test_who_works_at_a_low_table_squats_to_it() -> None:
+    low = Placed("low", "coffee_table", (3.0, 0.0, 3.4), (1.1, 0.42, 0.6), 0.0)
+    home = home_from_layouts([replace(ROOM, objects=(*ROOM.objects, low))], 0)
+    for caption in ("stirring with the right hand", "knocking with the right hand"):
+        motion = act(home, "low", caption, "low")
+        joints = motion.joint_positions().astype(np.float64)
+        lowest = joints[:, 0, 1].argmin()
+        trunk = joints[lowest, INDEX["neck"]] - joints[lowest, 0]
+        assert np.degrees(np.arccos(trunk[1] / np.linalg.norm(trunk))) < 58
