@@ -239,7 +239,7 @@ def _across(style: Walk, side: int, steps: Steps, wrist: Array) -> Array:
     outward = side * over
     aside, up = (
         side * row.aside_arms + row.over_arms * over,
-        row.up_arms + row.up_outwards_arms * np.maximum(outward, 0),
+        row.up_arms + row.up_outwards_arms * (0.5 + 0.5 * outward) ** 2,
     )
-    danced = np.stack([aside, up, row.ahead_arms - row.back_sideways_arms * np.abs(over)], axis=1)
+    danced = np.stack([aside, up, row.ahead_arms - row.back_sideways_arms * over**2], axis=1)
     return np.asarray(wrist + (style.across * steps.moving)[:, None] * (danced - wrist))

@@ -14,11 +14,12 @@ from zlib import crc32
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.backend_protocol import Part
+from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.motion import FPS, Action, PhaseKind, Skill
 from motion_backend.procedural.body_state import Body, Point
+from motion_backend.procedural.contrapposto import contrapposto
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
-from motion_backend.procedural.held_poses import SPINE_LEAN, UP, bend, idle, idle_table
+from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle, idle_table
 from motion_backend.procedural.pose import Pose, interpolate, settle_from
 from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
@@ -90,9 +91,12 @@ IN_POSE, BOTH_OUT = 0.4, 0.6
 """An arm is in a pose it is this near to (arm lengths); where not both are for so much of a way, that is no room."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
-ONE_LEG_ASIDE, ONE_LEG_LOWER, ONE_LEG_ROLL, OFTEN_LEFT = 0.035, 0.012, 0.06, 0.5
-"""How far the pelvis is over one leg of who stands about, and lower (metres at 1.70 m), how far it is tipped (radians),
-and how often that is the left leg (share)."""
+LEGS = ("pelvis", "hips", "ankles", "feet", "toes")
+"""The handles of who stands."""
+LEGS_DO = 1e-6
+"""Legs do something that moves these by more than this."""
+ROOM_TO_STEP = 0.08
+"""What is free about who steps on the spot, beyond what the body needs (metres)."""
 QUICK, RUNS = 1.7, 2.0
 """Who is to be faster (m/s) walks quickly, and runs."""
 HASTE = re.compile(r"\b(?:quick|run|rush|hurr|dash|fast)", re.IGNORECASE)
@@ -282,37 +286,46 @@ def stay(body: Body, part: Part) -> None:
         _stand_about(body, part.hold, replace(bearing, waits=waits))
         return
     if not does_it and (action.skill is not Skill.LOCO or action.goal is not None):
-        body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))
+        held = settle_from(body.pose, _idle(body, part.hold, restless), FPS)
+        body.add(_from_leg_to_leg(body, held, held, restless))
         return
     if style.doing in FLUNG:
         go(body, body.place, _where_legs_swing(body), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
     bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
-    held = replace(body.pose, **_carriage(bearing))
-    body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, held], FPS))
-    body.add(gesture(idle(body.pose, part.hold, restless, body.rng, FPS), style.doing))
+    body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(body.pose, **_carriage(bearing))], FPS))
+    held = _idle(body, part.hold, restless)
+    body.add(_from_leg_to_leg(body, held, gesture(held, style.doing), restless))
     if style.bearing.arms != ("hang", "hang"):
-        body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, at_ease], FPS))
+        stands = {name: getattr(body.pose, name) for name in LEGS}
+        body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(at_ease, **stands)], FPS))
+
+
+def _idle(body: Body, seconds: float, restless: float) -> Pose:
+    return idle(body.pose, seconds, restless, body.rng, FPS)
+
+
+def _from_leg_to_leg(body: Body, held: Pose, done: Pose, restless: float, goes_on: bool = False) -> Pose:
+    """Frames of who does something where it stands, its weight on one leg and then on the other; as they were where the
+    legs do something as well, or a hand lies on a thing."""
+    busy = any(np.abs(getattr(done, name) - getattr(held, name)).max() > LEGS_DO for name in LEGS)
+    if busy or done.reaching.any() or not done.planted.all():
+        return done
+    walkable = body.scene.walkable
+    room = float(walkable.field.at(np.array([body.place]))[0]) - walkable.radius >= ROOM_TO_STEP
+    steps = room and all(part.kind in (PartKind.WALK, PartKind.TURN) for part in body.upcoming[:1])
+    return contrapposto(done, body.skeleton, restless, body.rng, goes_on=goes_on, steps=steps)
 
 
 def _stand_about(body: Body, seconds: float, bearing: Bearing) -> None:
     """Stand as who has nothing more to do: the weight on one leg, arms as the mood has them."""
-    arms, left = arms_on_the_way(body.pose, bearing.waits), bool(body.rng.random() < OFTEN_LEFT)
-    aside = rotations.rotate(rotations.yaw_to_quat(body.yaw), np.array([1.0 if left else -1.0, 0.0, 0.0]))
-    rolled = ONE_LEG_ROLL * (1.0 if left else -1.0)
-    held = replace(body.pose, **_carriage(replace(bearing, arms=arms)))
-    held = replace(
-        held,
-        pelvis=held.pelvis + body.skeleton.scale * (ONE_LEG_ASIDE * aside - ONE_LEG_LOWER * UP),
-        hips=rotations.compose(held.hips, rotations.axis_to_quat("z", np.asarray(rolled))),
-        spine=held.spine - np.array([0.0, 0.0, rolled]),
-        reaching=np.zeros(2),
-        pressing=np.zeros(2),
-    )
+    arms = arms_on_the_way(body.pose, bearing.waits)
+    held = replace(body.pose, **_carriage(replace(bearing, arms=arms)), reaching=np.zeros(2), pressing=np.zeros(2))
     comes = round(min(STAYING / bearing.tempo, seconds / 2) * FPS) / FPS
     body.add(interpolate([0.0, comes], [body.pose, held], FPS))
-    body.add(idle(held, seconds - comes, bearing.restless, body.rng, FPS))
+    stood = _idle(body, seconds - comes, bearing.restless)
+    body.add(_from_leg_to_leg(body, stood, stood, bearing.restless, goes_on=True))
 
 
 def _carriage(bearing: Bearing) -> dict[str, Array]:

@@ -23,6 +23,8 @@ from motion_backend.procedural.walk.gait_character import NOBODY, GaitCharacter
 
 MIN_DOUBLE = 0.05
 """Share of a step on both feet that whoever does not run has at least."""
+BOUNCES, MORE = 0.04, 1.25
+"""A walk that bounces so much (metres) does so whoever it is: nobody less, and so much more at most."""
 CARRIAGE: Final = frozenset({"lean", "head"})
 """What of a bearing words and moods both change."""
 
@@ -107,7 +109,7 @@ class Walk:
             bearing=bearing,
             stride=self.stride * own.stride_ratio,
             clearance=self.clearance * own.clearance_ratio,
-            bounce=self.bounce * own.bounce_ratio,
+            bounce=self.bounce * (own.bounce_ratio if self.bounce < BOUNCES else min(max(own.bounce_ratio, 1.0), MORE)),
             sway=self.sway * own.sway_ratio,
             hips=self.hips * own.hips_ratio,
             twist=self.twist * own.twist_ratio,
