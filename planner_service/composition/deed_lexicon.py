@@ -90,6 +90,8 @@ _ALONE: Final = frozenset(("picture", "clock"))
 """Pieces that, as lamps, are themselves what something is done to."""
 _PICTURES: Final = frozenset(("photo", "photograph", "portrait", "frame", "poster", "drawing", "sketch", "wall"))
 """What hands do to these is seen at a picture."""
+_WRITTEN: Final = frozenset(("message", "text", "email", "letter"))
+"""What is answered without a voice."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 _ANYWHERE: Final = ("table", "kitchen counter", "desk", "cabinet")
 """Where a thing may be of which nobody knows where it is kept."""
@@ -473,7 +475,8 @@ def _words_in(pattern: Pattern) -> int:
 
 def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     """A clause's words from its verb on, then from every later -ing on."""
-    if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
+    written = not _WRITTEN.isdisjoint(clause.lemmas)
+    if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1 and not written:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
     if lemma_of(head_of(clause.subject)) in theme_words()["body"]:  # "arms folded", "her knees drew up"
         yield (*clause.lemmas[:1], *_lemmas(clause.subject), *clause.lemmas[1:])

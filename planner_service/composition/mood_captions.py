@@ -53,10 +53,11 @@ def _shares() -> dict[tuple[Skill, str], dict[Emotion, float]]:
 
 @cache
 def _mostly(skill: Skill, mood: Emotion) -> tuple[str, ...]:
-    """Captions of a skill that show a mood and no deed, in the order of the alphabet."""
+    """Captions of a skill that show a mood, no deed and no other mood, in the order of the alphabet."""
     rows = [row for row in deed_table().deed if row.rests or row.skill is Skill.LOCO or row.at == ("floor",)]
     deeds = {caption for row in rows for caption in (*row.captions, *row.lying, *row.seated)}
     shares = _shares()
+    deeds |= {usual(skill, other) for other in Emotion if other is not mood} - {usual(skill, mood)}
     return tuple(
         sorted(
             caption

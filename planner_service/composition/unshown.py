@@ -8,6 +8,7 @@ from typing import Final
 
 from motion_backend.motion import Skill
 from motion_backend.props import held_in
+from planner_service.composition.company import others_in
 from planner_service.composition.deed_lexicon import deed_table, pieces_in, said_row
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
@@ -86,8 +87,8 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
         text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
     ]
     left = (LEFT,) if goes_out(clause.text) else ()
-    more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes), *left)
-    return (*besides, *(text for text in more if not any(text in one for one in besides)))
+    more = (*others_in(clause, keyframes), *_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes), *left)
+    return (*besides, *(text for text in dict.fromkeys(more) if not any(text in one for one in besides)))
 
 
 def _held_words(keyframes: Sequence[PlannedKeyframe]) -> frozenset[str]:

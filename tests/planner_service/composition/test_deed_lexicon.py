@@ -186,7 +186,7 @@ def test_captions_show_what_is_done(text: str, caption: str) -> None:
         ("She wiped her face", Skill.LOCO, "wiping the face with the right hand"),
         ("She did the washing-up", Skill.TOUCH, "wash with both hands"),
         ("She shaved her legs", Skill.TOUCH, ""),
-        ("She put on lipstick", Skill.TOUCH, ""),
+        ("She put on lipstick", Skill.LOCO, "wiping the face with the right hand"),
         ("She buttoned her coat", Skill.LOCO, "dressing, both hands at the chest"),
         ("He hung up his coat", Skill.TOUCH, "An act of reaching high with the right hand"),
         ("He loaded the dishwasher", Skill.TOUCH, "put down with the right hand"),
