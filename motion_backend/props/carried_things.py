@@ -202,7 +202,7 @@ class _Places:
         named, corners = moment.named, prop_shape(self.shape.shape).vertices.astype(np.float64)
         at, yaw = (np.array(named.at), named.facing) if named is not None else (np.zeros(3), 0.0)
         ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
-        flat = prop_table().ways[self.shape.way].flat
+        flat = self.shape.flat or prop_table().ways[self.shape.way].flat
         y, z = (ahead, UP) if flat else (UP, -ahead)
         turn = rotations.basis_to_quat(np.cross(y, z)[None], y[None], z[None])[0]
         turned = rotations.rotate(turn, corners)

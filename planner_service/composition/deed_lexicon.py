@@ -297,7 +297,7 @@ def listed_places(clause: Clause) -> list[str]:
     """The furniture of two or more places or things that one thing is done to in turn, one for each: "looks under the
     cushions, | in the fridge, | behind the sofa", "turns on the radio | and the tap"."""
     parts = [part for part in _LISTED.split(clause.text) if part.strip()]
-    places = [where(part)[:1] for part in parts]
+    places = [(where(part) if pieces_in(part) else typical_of(part) or where(part))[:1] for part in parts]
     begins = [part.split()[0].lower() for part in parts[1:]]
     led = all(word in _PLACED for word in begins)
     bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split()[2:])
