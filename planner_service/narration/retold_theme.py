@@ -172,6 +172,8 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     acts = before in _PLURAL or (head and (is_plural(before) or follows in grammar().marks))
     form, how = form_of(word), is_adjective(word) and not acts
     base = word in bases(word) and not (how or _is_noun(word, before))
+    orders = plain and head and before == ","  # "Feed the cat": no past of a fee
+    form = None if orders and base else form
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
@@ -266,7 +268,8 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
         verb = told.tokens[stretch.verb] if stretch.verb is not None else None
         later = {token.told.lower() for token in told.tokens[stretch.end : told.end_of(stretch)]}
         alone = later.isdisjoint({"he", "she", "they", *voice.name.lower().split()[-1:]})  # "slighted, Ida withdrew"
-        if opens and alone and verb is not None and beats[stretch.beat].seen and _is_finite(verb.told):
+        asked = beats[stretch.beat].kind in ("deed", "feeling") and not beats[stretch.beat].who
+        if opens and alone and verb is not None and asked and _is_finite(verb.told):
             first = told.tokens[stretch.start]
             first.told = first.told[:1].lower() + first.told[1:]
             first.before, first.is_name = f"{voice['they'] if named else voice.name} ", True
@@ -277,7 +280,8 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
 
 def _is_finite(verb: str) -> bool:
     first = verb.split()[0].lower()
-    return first in _TOLD_IN_PAST or (form_of(first) == "past" and not is_adjective(first))
+    same = first in bases(first) and past(first) == first  # "put"
+    return first in _TOLD_IN_PAST or same or (form_of(first) == "past" and not is_adjective(first))
 
 
 def _capitalise(told: Retelling) -> None:
