@@ -13,7 +13,7 @@ from typing import Final
 
 from motion_backend.motion import RISINGS, Emotion, Skill
 from motion_backend.props import held_in, shown_as, things_named
-from planner_service.composition.deed_lexicon import pieces_in
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.composition.whereabouts import is_held
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.caption_fallbacks import usual

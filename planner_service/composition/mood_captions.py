@@ -9,7 +9,7 @@ from functools import cache
 from typing import Final
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import deed_table
+from planner_service.composition.deed_table import deed_table
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import usual
 

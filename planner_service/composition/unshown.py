@@ -9,7 +9,9 @@ from typing import Final
 from motion_backend.motion import Skill
 from motion_backend.props import held_in
 from planner_service.composition.company import others_in
-from planner_service.composition.deed_lexicon import deed_table, pieces_in, said_row
+from planner_service.composition.deed_lexicon import said_row
+from planner_service.composition.deed_table import deed_table
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.details import details_of
@@ -29,7 +31,8 @@ _PLACE: Final = re.compile(
 )
 """Where a deed is told to be done."""
 _NEAR: Final = re.compile(
-    r"\b(?:by|beside|next to|near|at|before|in front of) (?P<what>(?:the|an?|his|her|their|my) (?:[\w'-]+ ){0,2}?[\w'-]+)"
+    r"\b(?:by|beside|next to|near|at|before|in front of) "
+    r"(?P<what>(?:the|an?|his|her|their|my) (?:[\w'-]+ ){0,2}?[\w'-]+)"
     r"(?= (?:\w+ly|and|to|with|while|for|until|as|again|in|on|of|from)\b|[,.;]|$)",
     re.IGNORECASE,
 )
@@ -95,7 +98,13 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
         text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
     ]
     left = (LEFT,) if goes_out(clause.text) else ()
-    more = (*others_in(clause, keyframes), *_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes), *left)
+    more = (
+        *others_in(clause, keyframes),
+        *_things(clause, keyframes),
+        *_places(clause, keyframes),
+        *_counts(clause, keyframes),
+        *left,
+    )
     return (*besides, *(text for text in dict.fromkeys(more) if not any(text in one for one in besides)))
 
 

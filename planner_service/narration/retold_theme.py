@@ -172,7 +172,7 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     acts = before in _PLURAL or (head and (is_plural(before) or follows in grammar().marks))
     form, how = form_of(word), is_adjective(word) and not acts
     base = word in bases(word) and not (how or _is_noun(word, before))
-    orders = plain and head and before == ","  # "Feed the cat": no past of a fee
+    orders = plain and head and before in ("", ",")  # "Feed the cat": no past of a fee
     form = None if orders and base else form
     asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":

@@ -10,19 +10,9 @@ from for_each import for_each
 
 from motion_backend.motion import Skill
 from motion_backend.props import held_in
-from planner_service.composition.deed_lexicon import (
-    Deed,
-    DeedRow,
-    deed_of,
-    deed_table,
-    listed_places,
-    names_things,
-    pieces_in,
-    room_of,
-    row_of,
-    typical_of,
-    without_gestures,
-)
+from planner_service.composition.deed_lexicon import Deed, deed_of, row_of, without_gestures
+from planner_service.composition.deed_table import DeedRow, deed_table
+from planner_service.composition.furniture_words import listed_places, names_things, pieces_in, room_of, typical_of
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.lexicon import past, third_person
 from planner_service.themes.sentence_parser import Clause, clauses_of_text

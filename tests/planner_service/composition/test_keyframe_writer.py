@@ -15,9 +15,10 @@ from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.beat_planner import PartFinder
 from planner_service.composition.compose import compose
-from planner_service.composition.deed_lexicon import deed_of, pieces_in
-from planner_service.composition.keyframe_writer import NOT_ACTED, SPOKEN_OF
+from planner_service.composition.deed_lexicon import deed_of
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.composition.request import Request
+from planner_service.composition.unacted_beats import NOT_ACTED, SPOKEN_OF
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import usual

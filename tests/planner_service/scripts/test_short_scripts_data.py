@@ -13,7 +13,7 @@ from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import captions_of_gestures
+from planner_service.composition.deed_table import captions_of_gestures
 from planner_service.narration.narrative_voice import tells_of_one
 from planner_service.scripts.script import EMOTIONS, ShortScript
 from planner_service.scripts.script_repair import check, repair
