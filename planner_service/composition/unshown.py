@@ -8,10 +8,10 @@ from typing import Final
 
 from motion_backend.motion import Skill
 from motion_backend.props import held_in
-from planner_service.composition.company import others_in
 from planner_service.composition.deed_lexicon import said_row
 from planner_service.composition.deed_table import deed_table
 from planner_service.composition.furniture_words import pieces_in
+from planner_service.composition.other_people import others_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.details import details_of

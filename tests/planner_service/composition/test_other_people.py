@@ -5,7 +5,7 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.composition.company import others_in
+from planner_service.composition.other_people import others_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.sentence_parser import clauses_of_text
 
