@@ -426,6 +426,7 @@ class KeyframeWriter:
         stood, self._opening = self._opening, opening_of(Skill.LOCO, read.text)
         done = (Skill.LOCO, caption, piece, deed.row.holds)
         same = last is not None and (last.skill, last.caption, last.furniture, last.held) == done
+        same = same and (last is None or mood in (last.mood, Emotion.NEUTRAL))  # "reads it, smiles and answers"
         if same and (stood is self._opening or self._opening is None):  # who stood still looks out of the window then
             others = [one for one in captions if one != caption]
             if not others:

@@ -612,3 +612,10 @@ def test_what_nobody_could_see_is_named_and_nobody_walks_to_a_table_for_it(text:
 )
 def test_messages_are_on_a_screen_and_animals_are_shouted_for(text: str, caption: str) -> None:
     assert caption in deed(text).row.captions
+
+
+def test_no_saying_stands_twice_since_the_later_one_would_never_be_found() -> None:
+    for rows in (deed_table().deed, deed_table().gesture):
+        sayings = [saying for row in rows for saying in row.says]
+        assert len(sayings) == len(set(sayings))
+        assert all(row.says for row in rows)
