@@ -198,7 +198,8 @@ class _Places:
         return known[0] if known else len(self.holders) - 1
 
     def _lying(self, moment: Moment) -> Lying:
-        """Before the hand, on what it is laid on: books and coats on their broadest sides, cups on their feet, turned to who laid them."""
+        """Before the hand, on what it is laid on: books and coats on their broadest sides, cups on their feet, turned
+        to who laid them."""
         named, corners = moment.named, prop_shape(self.shape.shape).vertices.astype(np.float64)
         at, yaw = (np.array(named.at), named.facing) if named is not None else (np.zeros(3), 0.0)
         ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
