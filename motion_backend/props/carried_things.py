@@ -198,12 +198,14 @@ class _Places:
         return known[0] if known else len(self.holders) - 1
 
     def _lying(self, moment: Moment) -> Lying:
-        """Before the hand, on what it is laid on: books on their backs, cups on their feet, turned to who laid them."""
+        """Before the hand, on what it is laid on: books and coats on their broadest sides, cups on their feet, turned
+        to who laid them."""
         named, corners = moment.named, prop_shape(self.shape.shape).vertices.astype(np.float64)
         at, yaw = (np.array(named.at), named.facing) if named is not None else (np.zeros(3), 0.0)
         ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
-        flat = prop_table().ways[self.shape.way].flat
-        y, z = (ahead, UP) if flat else (UP, -ahead)
+        flat = self.shape.flat or prop_table().ways[self.shape.way].flat
+        thin = np.ptp(corners[:, 2]) <= np.ptp(corners[:, 0])  # a coat is thin from side to side of how it hangs
+        y, z = (ahead, UP if thin else np.cross(UP, ahead)) if flat else (UP, -ahead)
         turn = rotations.basis_to_quat(np.cross(y, z)[None], y[None], z[None])[0]
         turned = rotations.rotate(turn, corners)
         depth = float((turned @ ahead).min())

@@ -86,6 +86,8 @@ class Called:
     """Props of captions that it is held in the place of."""
     offset_m: Vector | None = None
     """From the palm, in its own frame; None: its way's."""
+    flat: bool = False
+    """Whether it lies on its back where it is put down, whatever its way has: a coat, which hangs from a hand."""
 
     def is_held_for(self, grip: Grip) -> bool:
         """Whether it is what a grip of a caption holds, or is held in the place of that."""

@@ -20,7 +20,7 @@ import numpy as np
 
 from motion_backend.language.minilm import Floats, MiniLM, WeightsError
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import captions_of_gestures
+from planner_service.composition.deed_table import captions_of_gestures
 from planner_service.scripts.captions import captions
 
 SHIPPED: Final = "beat_classifier.safetensors"

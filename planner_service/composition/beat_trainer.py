@@ -22,8 +22,8 @@ from torch.optim.swa_utils import AveragedModel
 from motion_backend.language.minilm import HEADS, LAYERS, WIDTH, WordPiece
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.beat_classifier import PAIR, SCALE, TOKENS, Vocabulary, plain
-from planner_service.composition.deed_lexicon import captions_of_gestures
 from planner_service.composition.deed_reader import BEFORE
+from planner_service.composition.deed_table import captions_of_gestures
 from planner_service.evaluation.beat_judgement import same_words
 from planner_service.evaluation.labels import Alternative, LabelledBeat, LabelledTheme
 from planner_service.scripts.captions import captions

@@ -7,7 +7,8 @@ from copy import deepcopy
 from dataclasses import dataclass, field, replace
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import Deed, deed_table
+from planner_service.composition.deed_lexicon import Deed
+from planner_service.composition.deed_table import deed_table
 from planner_service.composition.whereabouts import Whereabouts
 from planner_service.scripts.script import PlannedKeyframe
 

@@ -10,7 +10,7 @@ from typing import Final
 
 from motion_backend.motion import Skill
 from planner_service.composition.caption_senses import senses
-from planner_service.composition.deed_lexicon import DeedRow, deed_table
+from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.scripts.captions import captions, synonyms
 
 MOST: Final = 5

@@ -8,7 +8,10 @@ from functools import cache
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, object_of, pieces_in, readings, says
+from planner_service.composition.deed_lexicon import Deed, object_of, readings
+from planner_service.composition.deed_patterns import says
+from planner_service.composition.deed_table import DeedRow, deed_table
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import Keyframe
 from planner_service.themes.lexicon import grammar
 from planner_service.themes.protagonist import is_person

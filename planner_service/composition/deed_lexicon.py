@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
 from itertools import pairwise, takewhile
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.scripts.captions import captions
-from planner_service.scripts.script import EMOTIONS
+from planner_service.composition.deed_patterns import fits, says, words_in
+from planner_service.composition.deed_table import DeedRow, deed_table
+from planner_service.composition.furniture_words import (
+    lemmas_of,
+    listed_places,
+    pieces_in,
+    typical_of,
+)
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
 from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
@@ -22,13 +27,7 @@ from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of
 from planner_service.themes.verb_group import NEARLY
 from scene_graphs import furniture
-from scene_graphs.data_tables import read_table, require_known, table
 
-_GAP: Final = "..."
-_END: Final = frozenset(("$",))
-"""The end of a clause in a pattern."""
-_MAX_GAP: Final = 4
-"""Words that a gap of a pattern may stand for."""
 _WAYS: Final = re.compile(
     r"\b(?:to|into|through|around|about|along|across|towards?|down|up|out of|from room to|back)\b.*?"
     r"\b(?:rooms?|kitchen|hall(?:way)?|corridor|bedroom|study|house|home|flat|apartment|stairs|door|window|bathroom)\b",
@@ -75,12 +74,6 @@ _PUT: Final = frozenset(("on", "off", "up", "down", "out", "away", "in"))
 """Words that tell what is done to what stands before them: "kettle on"."""
 _FEWEST_SAID: Final = 2
 """Words that a saying must have of them: the verb, the thing and the last."""
-_THROUGH: Final = frozenset(("through", "in", "around", "round", "up", "down", "out", "over", "across"))
-"""Words between a deed and the room that it is done to: "searches through the kitchen"."""
-_LISTED: Final = re.compile(r",(?: and| then| or| even)*|\b(?:and|or)(?: then| even)*\b")
-_PLACED: Final = frozenset(("in", "on", "under", "behind", "beneath", "below", "inside", "at", "above", "beside",
-                             "between", "into", "onto", "with"))  # fmt: skip
-"""Words that each place of a list begins with."""
 _INSIDE: Final = re.compile(r"\b(?:crawl|creep|crept|climb|slip|squeez)\w* (?:back )?(?:inside|in)(?: with\b|$)")
 """Into what was named before."""
 _ON: Final = re.compile(r"\b(?:on|onto|in|into|at|over|by) (?=((?:\w+ ?){1,4}))")
@@ -90,111 +83,11 @@ _ALONE: Final = frozenset(("picture", "clock"))
 """Pieces that, as lamps, are themselves what something is done to."""
 _PICTURES: Final = frozenset(("photo", "photograph", "portrait", "frame", "poster", "drawing", "sketch", "wall"))
 """What hands do to these is seen at a picture."""
+_WRITTEN: Final = frozenset(("message", "text", "email", "letter"))
+"""What is answered without a voice."""
 _IT: Final = frozenset(("it", "there", "one", "them"))
 _ANYWHERE: Final = ("table", "kitchen counter", "desk", "cabinet")
 """Where a thing may be of which nobody knows where it is kept."""
-Pattern = tuple[frozenset[str], ...]
-"""Base forms of each word; an empty set is a gap."""
-
-
-@table
-class DeedRow:
-    """One thing that people do, and how a body shows it."""
-
-    says: tuple[str, ...]
-    skill: Skill
-    at: tuple[str, ...] = ()
-    captions: tuple[str, ...] = ()
-    lying: tuple[str, ...] = ()
-    seated: tuple[str, ...] = ()
-    rests: bool = False
-    things: bool = False
-    there: bool = False
-    """Whether hands do it at its furniture and nowhere else, unless that is named."""
-    mood: str = ""
-    standing: bool = False
-    """Whether who is on their feet already does it standing."""
-    stands: bool = False
-    """Whether its captions only stand for it."""
-    within: tuple[str, ...] = ()
-    """Parts of captions that are seen already: who does that does this where they are, "hangs up", "listens"."""
-    why: str = ""
-    """Why a body at home does not do it."""
-    unless: tuple[str, ...] = ()
-    """Of a gesture: where the words mean something else."""
-    small: bool = False
-    """Whether nobody gets up for it, of a gesture; else whether nobody who lies does."""
-    walks: bool = False
-    """Of a gesture: whether it is a way of walking, and not done on the spot."""
-    alone: bool = False
-    """Of a gesture: whether it is only done where nothing else is done meanwhile: not "sweeps, singing"."""
-    holds: str = ""
-    """The tool in the hand for it, where the clause names none."""
-
-
-@table
-class DeedTable:
-    """data/deeds.toml."""
-
-    not_furniture: str
-    rooms: dict[str, tuple[str, ...]]
-    usual: dict[str, dict[str, tuple[str, ...]]]
-    typical: dict[str, str]
-    stands_on: dict[str, str]
-    seats_at: dict[str, tuple[str, ...]]
-    deed: tuple[DeedRow, ...]
-    gesture: tuple[DeedRow, ...]
-    """What is seen in limbs, trunk or head, whatever else a clause tells."""
-
-    def __post_init__(self) -> None:
-        known = captions()
-        for row in (*self.deed, *self.gesture):
-            for skill, some in ((row.skill, row.captions), (Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
-                require_known(f"deed {row.says[0]!r}", some, known.get(skill.value, ()))
-            if row.mood:
-                require_known(f"deed {row.says[0]!r}: mood", (row.mood,), [mood.value for mood in EMOTIONS])
-            for word in row.at:
-                if word != "floor" and not furniture.is_known(word):
-                    raise ValueError(f"deed {row.says[0]!r}: {word!r} is no furniture we know")
-
-    @cached_property
-    def ways(self) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
-        """Every way to say a deed by each word that may begin it, "" for a gap, in the order of the rows."""
-        return _by_first_word(self.deed)
-
-    @cached_property
-    def gestures(self) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
-        """The same of gestures."""
-        return _by_first_word(self.gesture)
-
-
-def _by_first_word(rows: Iterable[DeedRow]) -> Mapping[str, Sequence[tuple[Pattern, DeedRow]]]:
-    found: dict[str, list[tuple[Pattern, DeedRow]]] = {}
-    for row in rows:
-        for pattern in map(_pattern, row.says):
-            for first in pattern[0] or ("",):
-                found.setdefault(first, []).append((pattern, row))
-    return found
-
-
-@cache
-def deed_table() -> DeedTable:
-    """The deeds we know."""
-    known: DeedTable = read_table("planner_service", "deeds.toml", DeedTable)
-    return known
-
-
-@cache
-def captions_of_gestures() -> frozenset[tuple[Skill, str]]:
-    """The captions that gestures have and no other deed: labels of beats that were learned from do not know them."""
-    table = deed_table()
-    return _captions(table.gesture) - _captions(table.deed)
-
-
-def _captions(rows: Iterable[DeedRow]) -> frozenset[tuple[Skill, str]]:
-    own = ((row.skill, row.captions) for row in rows)
-    rest = ((skill, some) for row in rows for skill, some in ((Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)))
-    return frozenset((skill, one) for skill, some in (*own, *rest) for one in some)
 
 
 @dataclass(frozen=True)
@@ -289,41 +182,6 @@ def _touched(clause: Clause, about: str, row: DeedRow, named: list[str]) -> Deed
         return Deed(replace(row, stands=True), Skill.TOUCH, _ANYWHERE, False) if _may_be_touched(clause) else None
     order = (*kept, *row.at) if row.things else (*row.at, *kept)
     return Deed(row, Skill.TOUCH, tuple(dict.fromkeys(order)), False)
-
-
-def listed_places(clause: Clause) -> list[str]:
-    """The furniture of two or more places or things that one thing is done to in turn, one for each: "looks under the
-    cushions, | in the fridge, | behind the sofa", "turns on the radio | and the tap"."""
-    parts = [part for part in _LISTED.split(clause.text) if part.strip()]
-    places = [where(part)[:1] for part in parts]
-    begins = [part.split()[0].lower() for part in parts[1:]]
-    led = all(word in _PLACED for word in begins)
-    bare = all(word in grammar().marks - {"to"} for word in begins) and not _PLACED & set(clause.text.split()[2:])
-    bare = bare and not re.search(r"^[^,]+, an? [^,]+$", clause.text)  # "opens the box, a scarf" names what it is
-    known = [piece for some in places for piece in some if affords(piece, "touch")]
-    return list(dict.fromkeys(known)) if (led or bare) and len(set(known)) > 1 and len(known) == len(parts) else []
-
-
-def typical_of(text: str) -> list[str]:
-    """What is typical of the rooms that something is done to, in their order: "searches the study, the hall and …";
-    none for those that it is only done in."""
-    words = [token.low for token in tokens_of(text)]
-    typical, known = deed_table().typical, grammar()
-    found: dict[str, None] = {}
-    before = 0
-    for at in range(len(words)):
-        name = " ".join(words[at : at + 2]) if " ".join(words[at : at + 2]) in typical else words[at]
-        # "washes the dishes in the kitchen"
-        within = "in" in words[1:at] and any(map(is_noun, words[1 : words.index("in")]))
-        if name in typical and not within and (before or not known.prepositions & set(words[1:at]) - _THROUGH):
-            end = at + len(name.split())
-            listed = not before or all(
-                word in known.marks | known.adverbs | {",", "and", "then"} for word in words[before:at]
-            )
-            if listed and at and not (words[end:] and is_noun(words[end]) and words[end] not in known.prepositions):
-                found[typical[name]] = None
-                before = end
-    return list(found)
 
 
 def _may_be_noun(lemma: str) -> bool:
@@ -421,7 +279,7 @@ def _spelt_out(clause: Clause, about: str) -> Clause:
     """A clause with what "it" and "them" mean: of trainers "ties them" is ties the trainers, of a sofa "jumps on it" is
     on the sofa."""
     on = _ON_IT.search(clause.text) and pieces_in(about)
-    meant = on[-1] if on else next((word for word in _lemmas(about) if word in things()), "")
+    meant = on[-1] if on else next((word for word in lemmas_of(about) if word in things()), "")
     if not meant or not {"it", "them"} & set(clause.lemmas[1:]):
         return clause
     known = replace(clause, lemmas=tuple(meant if word in ("it", "them") else word for word in clause.lemmas))
@@ -442,13 +300,13 @@ def _said(clause: Clause, gestures: bool = True) -> tuple[int, DeedRow] | None:
     for lemmas in readings(clause):
         first = "".join(lemmas[:1])
         for pattern, row in table.gestures.get(first, ()) if gestures and does and not limbs else ():
-            if _fits(pattern, lemmas) and not says(row.unless, lemmas) and not (row.alone and _is_beside(clause)):
+            if fits(pattern, lemmas) and not says(row.unless, lemmas) and not (row.alone and _is_beside(clause)):
                 return len(lemmas), row
         fitting = [
-            (_words_in(pattern), row)
+            (words_in(pattern), row)
             for word in (first if does else "", "")
             for pattern, row in table.ways.get(word, ())
-            if _fits(pattern, lemmas)
+            if fits(pattern, lemmas)
         ]
         if fitting:
             return max(fitting, key=lambda one: one[0])
@@ -466,17 +324,13 @@ def without_gestures(clause: Clause) -> DeedRow | None:
     return found[1] if found else None
 
 
-def _words_in(pattern: Pattern) -> int:
-    """How many words a pattern has, its gaps and its end aside."""
-    return sum(bool(word) and word != _END for word in pattern)
-
-
 def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     """A clause's words from its verb on, then from every later -ing on."""
-    if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1:  # "says into the phone"
+    written = not _WRITTEN.isdisjoint(clause.lemmas)
+    if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1 and not written:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
     if lemma_of(head_of(clause.subject)) in theme_words()["body"]:  # "arms folded", "her knees drew up"
-        yield (*clause.lemmas[:1], *_lemmas(clause.subject), *clause.lemmas[1:])
+        yield (*clause.lemmas[:1], *lemmas_of(clause.subject), *clause.lemmas[1:])
     if clause.text.split(" ", 1)[0].lower() in NEARLY:
         yield ("nearly", *clause.lemmas)
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
@@ -517,7 +371,7 @@ def _kept(clause: Clause, about: str) -> tuple[str, ...]:
     found = next((places[word] for word in reversed([*run])), ())  # "the photo | album"
     if found or not _IT & set(clause.lemmas[1:]):
         return found
-    return next((places[word] for word in reversed(_lemmas(about)) if word in places), ())
+    return next((places[word] for word in reversed(lemmas_of(about)) if word in places), ())
 
 
 def is_another(clause: Clause, piece: str) -> bool:
@@ -528,100 +382,3 @@ def is_another(clause: Clause, piece: str) -> bool:
     kept = things().get(thing) if shown else None
     alone = furniture.class_of(piece) == "light" or furniture.canonical(piece) in _ALONE
     return kept is not None and piece not in kept and alone
-
-
-def _lemmas(text: str) -> list[str]:
-    return [lemma_of(token.text) for token in tokens_of(text)]
-
-
-def where(text: str) -> tuple[str, ...]:
-    """Furniture that words name, else where the first thing is that they name."""
-    places = things()
-    return tuple(pieces_in(text)) or next((places[word] for word in _lemmas(text) if word in places), ())
-
-
-def names_things(clause: Clause) -> bool:
-    """Whether a clause names furniture or things, which "it" may mean later."""
-    words = (*clause.lemmas, *_lemmas(clause.subject))
-    return bool(pieces_in(clause.text)) or any(word in things() for word in words)
-
-
-def _fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
-    """Whether words begin as a pattern says."""
-    if not pattern:
-        return True
-    first, rest = pattern[0], pattern[1:]
-    if first == _END:
-        return not lemmas
-    if not first:  # a gap
-        return any(_fits(rest, lemmas[skip:]) for skip in range(min(_MAX_GAP, len(lemmas)) + 1))
-    return bool(lemmas) and lemmas[0] in first and _fits(rest, lemmas[1:])
-
-
-def says(ways: Iterable[str], lemmas: Sequence[str]) -> bool:
-    """Whether words say what one of some patterns says."""
-    return any(_fits(_pattern(way), lemmas) for way in ways)
-
-
-@cache
-def _pattern(says: str) -> Pattern:
-    return tuple(
-        frozenset() if word == _GAP else frozenset(form for one in word.split("|") for form in _forms(one))
-        for word in says.split()
-    )
-
-
-def _forms(word: str) -> tuple[str, ...]:
-    if word.startswith("@"):
-        return things_called(word[1:])
-    return (word,) if word == "lay" else (word, lemma_of(word))  # who lies lays nothing
-
-
-def pieces_in(text: str) -> list[str]:
-    """Furniture words of a text in its order, longest names first: "dining table", not "table"."""
-    return [piece for _, piece in pieces_told(text)]
-
-
-def pieces_told(text: str) -> list[tuple[str, str]]:
-    """The same, each after the text's own words for it: "bin" for a trash can."""
-    words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
-    others = {*deed_table().not_furniture.split()}
-    found: list[tuple[str, str]] = []
-    at = 0
-    while at < len(words):
-        size = next((size for size in (3, 2, 1) if _names(words[at : at + size], size)), 0)
-        if (
-            size
-            and not (size == 1 and {words[at], lemma_of(words[at])} & others)
-            and not (at == 0 and _is_a_deed(words))
-        ):
-            name = " ".join(words[at : at + size])
-            piece = deed_table().stands_on.get(name) or furniture.canonical(name).replace("_", " ")
-            after = lemma_of("".join(words[at + size : at + size + 1]))
-            if piece != "picture" or after not in things_called("book"):  # "the photo album"
-                found.append((name, deed_table().stands_on.get(piece, piece)))
-        at += size or 1
-    return found
-
-
-def _is_a_deed(words: Sequence[str]) -> bool:
-    """Whether a furniture word is a verb: "sinks onto the bottom stair"."""
-    ways = {"into", "onto", "down", "to", "back", "on"}
-    led = len(words) > 1 and words[1] in ways | (grammar().marks - {"of"})
-    return led and bool(verb_of(words[0]))
-
-
-def _names(words: Sequence[str], size: int) -> bool:
-    """Whether these very words, and not only the last of them, are a furniture word."""
-    whole = " ".join(words)
-    if whole in deed_table().stands_on:
-        return True
-    if len(words) < size or not furniture.is_known(whole):
-        return False
-    return size == 1 or furniture.canonical(whole) != furniture.canonical(" ".join(words[1:]))
-
-
-def room_of(clause: Clause) -> str | None:
-    """The room type that the words of a clause make one think of: "cooks" is the kitchen's."""
-    words = {*clause.lemmas, *pieces_in(clause.text)} - ({"sink"} if clause.verb == "sink" else set())
-    return next((room for room, those in deed_table().rooms.items() if words & set(those)), None)

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 from motion_backend.motion import Skill
 from planner_service.composition.body_track import BodyTrack
-from planner_service.composition.deed_lexicon import Deed, deed_table, room_of
+from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader
+from planner_service.composition.deed_table import deed_table
+from planner_service.composition.furniture_words import room_of
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.opening_words import opening_of

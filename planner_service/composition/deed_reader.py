@@ -16,14 +16,9 @@ from motion_backend.language.sentence_encoder import SentenceEncoder
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely, shipped
 from planner_service.composition.caption_senses import contradicted, is_shown, shows
-from planner_service.composition.deed_lexicon import (
-    Deed,
-    DeedRow,
-    captions_of_gestures,
-    deed_of,
-    is_another,
-    pieces_in,
-)
+from planner_service.composition.deed_lexicon import Deed, deed_of, is_another
+from planner_service.composition.deed_table import DeedRow, captions_of_gestures
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of
 from planner_service.scripts.acted_beats import RESTS

@@ -8,7 +8,9 @@ from dataclasses import replace
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed, deed_table, object_of, pieces_in
+from planner_service.composition.deed_lexicon import Deed, object_of
+from planner_service.composition.deed_table import deed_table
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import lemma_of

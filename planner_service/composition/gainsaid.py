@@ -8,7 +8,7 @@ from typing import Final
 
 from motion_backend.motion import Skill
 from planner_service.composition.caption_senses import only_in
-from planner_service.composition.deed_lexicon import pieces_in
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.sentence_parser import Clause

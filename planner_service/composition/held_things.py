@@ -13,7 +13,7 @@ from typing import Final
 
 from motion_backend.motion import RISINGS, Emotion, Skill
 from motion_backend.props import held_in, shown_as, things_named
-from planner_service.composition.deed_lexicon import pieces_in
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.composition.whereabouts import is_held
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.caption_fallbacks import usual
@@ -24,7 +24,7 @@ from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
-from planner_service.themes.verb_finder import tokens_of
+from planner_service.themes.verb_finder import is_plural, tokens_of
 
 CARRIED: Final = "carrying with both hands"
 """How who walks carries what takes both hands."""
@@ -76,7 +76,7 @@ class _Hands:
         tool = next((one for one in [*told, keyframe.held] if is_tool(one, keyframe)), "")
         if tool:  # "it" is what it was done to
             self.named.setdefault(number, tool)
-            self.last = next((one for one in told if one != tool), "") or mentioned(clause) or self.last
+            self.last = next((one for one in (*told, mentioned(clause)) if one not in ("", tool)), self.last)
             return
         thing = told[min(nth, len(told) - 1)] if told else ""
         self.last = thing or mentioned(clause) or self.last
@@ -290,7 +290,7 @@ def _last_thing(words: Sequence[str]) -> str:
     """The thing that a phrase is of, by its last noun: of "the wine glass" that, of "the coffee table" none."""
     for place in range(len(words) - 1, -1, -1):
         word, before = words[place], words[place - 1] if place else ""
-        thing = word if word in things_named() else lemma_of(word)
+        thing = word if word in things_named() or not is_plural(word) else lemma_of(word)  # "drunk" is no drink
         if word == "glasses":
             thing = "glasses" if before in _OWN else "glass"
         pair = f"{before} {thing}"

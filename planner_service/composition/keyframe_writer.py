@@ -17,21 +17,19 @@ import numpy as np
 from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.caption_senses import only_in, shows
-from planner_service.composition.deed_lexicon import (
-    Deed,
-    DeedRow,
-    deed_table,
+from planner_service.composition.deed_lexicon import Deed, row_of
+from planner_service.composition.deed_places import DeedPlaces
+from planner_service.composition.deed_reader import TOUCHES, DeedReader
+from planner_service.composition.deed_table import DeedRow, deed_table
+from planner_service.composition.earlier_deeds import done_before, with_its_noun
+from planner_service.composition.furniture_words import (
     listed_places,
     names_things,
     pieces_in,
     room_of,
-    row_of,
     typical_of,
     where,
 )
-from planner_service.composition.deed_places import DeedPlaces
-from planner_service.composition.deed_reader import TOUCHES, DeedReader
-from planner_service.composition.earlier_deeds import done_before, with_its_noun
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
 from planner_service.composition.rest_place import (
@@ -40,6 +38,7 @@ from planner_service.composition.rest_place import (
     eats,
     goes_on,
     is_beside,
+    is_done_standing,
     is_on,
     is_there,
     lies,
@@ -52,6 +51,7 @@ from planner_service.composition.rest_place import (
     sits_up,
 )
 from planner_service.composition.stand_in import SEATS, is_too_much
+from planner_service.composition.unacted_beats import BESIDE, HELD, NOT_ACTED, UNSHOWN, not_acted
 from planner_service.composition.whereabouts import is_held, is_worn
 from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import captions
@@ -59,29 +59,13 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.opening_words import Kind, opening_of
-from planner_service.themes.protagonist import head_of, is_person, names_somebody
+from planner_service.themes.protagonist import head_of, names_somebody
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
 
-NOT_ACTED: Final = {
-    "undone": "it is not done",
-    "memory": "it is remembered, not done now",
-    "other": "somebody or something else does it",
-    "speech": "it is said; the body does not speak",
-}
-"""Why beats of these kinds are not acted."""
-ONE_PLAYS: Final = "one person is played"
-_NOT_THERE: Final = frozenset(("nobody", "no", "none", "somebody", "someone", "everybody", "everyone"))
-SPOKEN_OF: Final = "it is only spoken of"
-NO_DEED: Final = "it is no deed"
-UNSHOWN: Final = "none of the captions shows it"
-BESIDE: Final = "the body does something else meanwhile, on its feet"
-"""Why what would be done sitting is not, beside that: "irons a shirt while listening to the radio"."""
-HELD: Final = "what is held or worn stays as it is"
-"""Why what is only held, or is in somebody's own clothes, is not acted."""
 EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 """Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
@@ -102,20 +86,6 @@ _LOW_DOWN: Final = re.compile(
     r"\b(?:under\w*|beneath|below|behind|floor\w*|ground|rug|carpet|tiles|low\w*|bottom|kne\w+|crawl\w*|crouch\w*|prone)\b"
 )
 """Words of what hands get down on the floor for."""
-
-
-def _not_acted(read: ReadBeat) -> str:
-    """Why a beat of a kind that is not acted is not."""
-    if read.clause.aside and read.beat.kind != "memory":
-        return SPOKEN_OF
-    who = read.beat.who
-    nobody = not who or (who.lower() in ("it", "there") and read.clause.verb == "be")
-    first, *rest = who.split(" ")
-    if read.beat.kind == "other" and is_person(who) and first.lower() not in _NOT_THERE:
-        named = " ".join([first.lower() if first.lower() in grammar().marks else first, *rest[:2]])
-        named = named if len(rest) <= 2 and grammar().prepositions.isdisjoint(rest) else "somebody else"
-        return f"{named} does it: {ONE_PLAYS}"
-    return NO_DEED if read.beat.kind == "other" and nobody else NOT_ACTED[read.beat.kind]
 
 
 @dataclass(frozen=True)
@@ -185,7 +155,7 @@ class KeyframeWriter:
         nexts = beats[index + 1 :]
         self._ahead = next(filter(None, (one.room or room_of(one.clause) for one in nexts)), None)
         if beat.kind in NOT_ACTED:
-            self.why[index] = _not_acted(read)
+            self.why[index] = not_acted(read)
             self.body.whereabouts.told(read.clause)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
@@ -300,7 +270,7 @@ class KeyframeWriter:
                 self._rise(index, deed, mood)
             case Skill.LOCO if resting is not None and goes_on(read, deed):
                 self.body.show(index)
-            case Skill.LOCO if deed.row.seated and sits(resting) and not _is_done_standing(read):
+            case Skill.LOCO if deed.row.seated and sits(resting) and not is_done_standing(read):
                 self._rest(index, read, replace(deed, pieces=(), named=False), mood, Skill.SITDOWN, deed.row.seated)
             case Skill.LOCO if deed.row.lying and lies(resting) and (not deed.named or is_on(resting, deed)):
                 self._rest(index, read, deed, mood, Skill.LIEDOWN, deed.row.lying)
@@ -456,6 +426,7 @@ class KeyframeWriter:
         stood, self._opening = self._opening, opening_of(Skill.LOCO, read.text)
         done = (Skill.LOCO, caption, piece, deed.row.holds)
         same = last is not None and (last.skill, last.caption, last.furniture, last.held) == done
+        same = same and (last is None or mood in (last.mood, Emotion.NEUTRAL))  # "reads it, smiles and answers"
         if same and (stood is self._opening or self._opening is None):  # who stood still looks out of the window then
             others = [one for one in captions if one != caption]
             if not others:
@@ -587,11 +558,6 @@ class KeyframeWriter:
         told = [one for one in captions if self._clause is not None and shows(skill, one, self._clause)]
         options = fitting(told or captions, skill, mood)
         return options[int(np.random.default_rng([self.seed, index]).integers(len(options)))]
-
-
-def _is_done_standing(read: ReadBeat) -> bool:
-    """Whether who sits gets up for what may be done sitting too: "eats standing", "stares out of the window"."""
-    return "stand" in read.clause.lemmas or opening_of(Skill.LOCO, read.text) == "window"
 
 
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:

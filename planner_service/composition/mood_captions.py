@@ -9,7 +9,7 @@ from functools import cache
 from typing import Final
 
 from motion_backend.motion import Emotion, Skill
-from planner_service.composition.deed_lexicon import captions_of_gestures, deed_table
+from planner_service.composition.deed_table import captions_of_gestures, deed_table
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import usual
 
@@ -55,10 +55,11 @@ def _shares() -> dict[tuple[Skill, str], dict[Emotion, float]]:
 
 @cache
 def _mostly(skill: Skill, mood: Emotion) -> tuple[str, ...]:
-    """Captions of a skill that show a mood and no deed, in the order of the alphabet."""
+    """Captions of a skill that show a mood, no deed and no other mood, in the order of the alphabet."""
     rows = [row for row in deed_table().deed if row.rests or row.skill is Skill.LOCO or row.at == ("floor",)]
     deeds = {caption for row in rows for caption in (*row.captions, *row.lying, *row.seated)}
     shares = _shares()
+    deeds |= {usual(skill, other) for other in Emotion if other is not mood} - {usual(skill, mood)}
     return tuple(
         sorted(
             caption

@@ -9,9 +9,11 @@ from typing import Final
 
 from motion_backend.motion import RISINGS, Skill
 from planner_service.composition.caption_senses import shows
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_table, where
+from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import HARDLY, HARDLY_HERE, DeedReader, seated_as_well
+from planner_service.composition.deed_table import DeedRow, deed_table
+from planner_service.composition.furniture_words import where
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
@@ -83,6 +85,11 @@ def is_sure(read: ReadBeat, deed: Deed) -> bool:
     goes = deed.skill is Skill.LOCO and read.clause.verb in _GOES
     opens = deed.skill is Skill.TOUCH and opening_of(deed.skill, read.text) is not None
     return fetches or goes or opens or (deed.skill in (Skill.SITDOWN, Skill.LIEDOWN) and read.clause.verb in _SLEEPS)
+
+
+def is_done_standing(read: ReadBeat) -> bool:
+    """Whether who sits gets up for what may be done sitting too: "eats standing", "stares out of the window"."""
+    return "stand" in read.clause.lemmas or opening_of(Skill.LOCO, read.text) == "window"
 
 
 def eats(deed: Deed) -> bool:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
 from planner_service.composition import llm_planner
-from planner_service.composition.keyframe_writer import NOT_ACTED
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, RULES, Record, Request
+from planner_service.composition.unacted_beats import NOT_ACTED
 from planner_service.llm.protocol import LanguageModel, ModelError
 from planner_service.scripts.script import EMOTIONS, Beat, LongScript, PlannedKeyframe, Retrieved
 from planner_service.scripts.script_library import ScriptLibrary

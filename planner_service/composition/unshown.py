@@ -8,12 +8,15 @@ from typing import Final
 
 from motion_backend.motion import Skill
 from motion_backend.props import held_in
-from planner_service.composition.deed_lexicon import deed_table, pieces_in, said_row
+from planner_service.composition.deed_lexicon import said_row
+from planner_service.composition.deed_table import deed_table
+from planner_service.composition.furniture_words import pieces_in
+from planner_service.composition.other_people import others_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import grammar, lemma_of
-from planner_service.themes.opening_words import goes_out
+from planner_service.themes.opening_words import goes_out, opening_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things, things_called
@@ -27,6 +30,15 @@ _PLACE: Final = re.compile(
     re.IGNORECASE,
 )
 """Where a deed is told to be done."""
+_NEAR: Final = re.compile(
+    r"\b(?:by|beside|next to|near|at|before|in front of) "
+    r"(?P<what>(?:the|an?|his|her|their|my) (?:[\w'-]+ ){0,2}?[\w'-]+)"
+    r"(?= (?:\w+ly|and|to|with|while|for|until|as|again|in|on|of|from)\b|[,.;]|$)",
+    re.IGNORECASE,
+)
+"""What a deed is told to be done beside."""
+_NOWHERE: Final = frozenset(("windowsill", "sill", "fireplace", "hearth", "fire", "fireside", "stairs", "balcony"))
+"""Places of a home that no home here has."""
 _ON: Final = frozenset(("on top of", "on", "onto", "upon"))
 _HIDDEN: Final = frozenset(("under", "underneath", "beneath", "behind", "in", "into", "inside", "through"))
 _UNDER: Final = frozenset(("under", "underneath", "beneath"))
@@ -86,8 +98,14 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
         text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
     ]
     left = (LEFT,) if goes_out(clause.text) else ()
-    more = (*_things(clause, keyframes), *_places(clause, keyframes), *_counts(clause, keyframes), *left)
-    return (*besides, *(text for text in more if not any(text in one for one in besides)))
+    more = (
+        *others_in(clause, keyframes),
+        *_things(clause, keyframes),
+        *_places(clause, keyframes),
+        *_counts(clause, keyframes),
+        *left,
+    )
+    return (*besides, *(text for text in dict.fromkeys(more) if not any(text in one for one in besides)))
 
 
 def _held_words(keyframes: Sequence[PlannedKeyframe]) -> frozenset[str]:
@@ -139,12 +157,24 @@ def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
             continue
         if _is_place(what) and not any(_is_at(one, how, what) for one in keyframes):
             found.append(place[0])
-    return found
+    beside = [place for place in _NEAR.finditer(clause.text) if not _is_near(clause, place["what"], keyframes)]
+    return [*found, *(place[0] for place in beside)]
+
+
+def _is_near(clause: Clause, what: str, keyframes: Sequence[PlannedKeyframe]) -> bool:
+    """Whether a keyframe is seen beside what words name, where that is a place: furniture, a window or a door."""
+    noun = lemma_of(_words(what)[-1])
+    if noun in _NOWHERE:
+        return False
+    if noun in ("window", "door", "doorway"):
+        return any(opening_of(one.skill, clause.text) for one in keyframes)
+    return not pieces_in(what) or any(_is_at(one, "at", what) for one in keyframes)
 
 
 def _is_place(what: str) -> bool:
     """Whether words name furniture or a thing; no room, time or part of a body."""
-    return bool(pieces_in(what)) or lemma_of(_words(what)[-1]) in things()
+    noun = lemma_of(_words(what)[-1])
+    return bool(pieces_in(what)) or noun in things() or noun in _NOWHERE
 
 
 def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
@@ -152,6 +182,8 @@ def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
     if any(lemma_of(word) in map(lemma_of, _words(keyframe.caption)) for word in _words(what)[1:]):
         return True  # "reads in the book": that is in the hands
     pieces = pieces_in(what)
+    if lemma_of(_words(what)[-1]) in _NOWHERE:
+        return False
     kinds = categories_of(keyframe.piece[0])
     meant = [*pieces, *(seat for piece in pieces for seat in deed_table().seats_at.get(piece, ()))]
     there = any(not kinds.isdisjoint(categories_of(piece)) for piece in meant)

@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass, field
 from typing import Final
 
-from planner_service.composition.deed_lexicon import Deed, pieces_in, thing_of
+from planner_service.composition.deed_lexicon import Deed, thing_of
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import head_of
 from planner_service.themes.sentence_parser import Clause

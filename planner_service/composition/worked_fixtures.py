@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Final, Literal
 
 from motion_backend.motion import Does, Skill
-from planner_service.composition.deed_lexicon import pieces_in
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.sentence_parser import Clause

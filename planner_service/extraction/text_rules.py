@@ -9,7 +9,8 @@ from itertools import accumulate, groupby
 from typing import Final
 
 from motion_backend.motion import Emotion
-from planner_service.composition.deed_lexicon import deed_of, room_of
+from planner_service.composition.deed_lexicon import deed_of
+from planner_service.composition.furniture_words import room_of
 from planner_service.composition.keyframe_writer import KeyframeWriter
 from planner_service.extraction.llm_text import fitting
 from planner_service.extraction.script_writer import Draft, Maker

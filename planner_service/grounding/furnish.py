@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import pieces_told
+from planner_service.composition.furniture_words import pieces_told
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
 from planner_service.grounding.opening_places import has_opening

@@ -16,7 +16,8 @@ from motion_backend.emotion_words import emotion_of
 from motion_backend.motion import RISINGS, Does, Skill
 from motion_backend.procedural.caption_coverage import understands
 from planner_service.composition.caption_senses import is_shown
-from planner_service.composition.deed_lexicon import deed_of, pieces_told
+from planner_service.composition.deed_lexicon import deed_of
+from planner_service.composition.furniture_words import pieces_told
 from planner_service.grounding.furnish import Furnished, furnished_again
 from planner_service.grounding.keyframes_to_actions import NEEDS
 from planner_service.scripts.acted_beats import beats_in, connects

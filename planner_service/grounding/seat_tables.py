@@ -9,7 +9,7 @@ from itertools import groupby
 from typing import Final
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import deed_table
+from planner_service.composition.deed_table import deed_table
 from planner_service.scripts.script import Keyframe
 
 _AT_A_TABLE: Final = re.compile(r"\b(?:at|on) the table\b|\bkeyboard\b")

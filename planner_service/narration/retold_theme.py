@@ -212,6 +212,8 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     )
     form, how = form_of(word), is_adjective(word) and not acts
     base = word in bases(word) and not (how or _is_noun(word, before))
+    orders = plain and head and before in ("", ",")  # "Feed the cat": no past of a fee
+    form = None if orders and base else form
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
         tears = word == "tears" and follows in _TORN  # no tears of somebody who weeps
@@ -299,7 +301,8 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
         verb = told.tokens[stretch.verb] if stretch.verb is not None else None
         later = {token.told.lower() for token in told.tokens[stretch.end : told.end_of(stretch)]}
         alone = later.isdisjoint({"he", "she", "they", *voice.name.lower().split()[-1:]})  # "slighted, Ida withdrew"
-        if opens and alone and verb is not None and beats[stretch.beat].seen and _is_finite(verb.told):
+        asked = beats[stretch.beat].kind in ("deed", "feeling") and not beats[stretch.beat].who
+        if opens and alone and verb is not None and asked and _is_finite(verb.told):
             first = told.tokens[stretch.start]
             first.told = first.told[:1].lower() + first.told[1:]
             first.before, first.is_name = f"{voice['they'] if named else voice.name} ", True
@@ -310,7 +313,8 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
 
 def _is_finite(verb: str) -> bool:
     first = verb.split()[0].lower()
-    return first in _TOLD_IN_PAST or (form_of(first) == "past" and not is_adjective(first))
+    same = first in bases(first) and past(first) == first  # "put"
+    return first in _TOLD_IN_PAST or same or (form_of(first) == "past" and not is_adjective(first))
 
 
 def _capitalise(told: Retelling) -> None:

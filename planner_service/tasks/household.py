@@ -7,7 +7,8 @@ from dataclasses import field
 from functools import cache
 from typing import Final
 
-from planner_service.composition.deed_lexicon import DeedRow, says
+from planner_service.composition.deed_patterns import says
+from planner_service.composition.deed_table import DeedRow
 from planner_service.scripts.captions import captions
 from planner_service.themes.lexicon import Words, lemma_of
 from planner_service.themes.things import things

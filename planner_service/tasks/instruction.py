@@ -11,7 +11,9 @@ from typing import Final, Literal, cast
 
 from motion_backend.motion import Skill
 from motion_backend.planners.markov_planner import Hand
-from planner_service.composition.deed_lexicon import Deed, DeedRow, deed_of, deed_table, says, without_gestures
+from planner_service.composition.deed_lexicon import Deed, deed_of, without_gestures
+from planner_service.composition.deed_patterns import says
+from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.scripts.script_repair import NO_WAY_TO_GO
 from planner_service.tasks.household import household, in_hand, is_one, told_by
 from planner_service.tasks.task_plan import MAX_ACTION_LENGTH, TaskError

@@ -162,6 +162,15 @@ def test_what_is_put_down_comes_in_the_hand_and_stays_where_it_was_put_on_what_i
     assert np.linalg.norm((resting.min(axis=0) + resting.max(axis=0))[[0, 2]] / 2 - np.array(at)[[0, 2]]) < 0.5
 
 
+@for_each(("thing", "high"), [("coat", 0.12), ("umbrella", 0.12), ("letter", 0.02), ("bottle", 1.0)])
+def test_a_coat_that_is_put_down_lies_and_does_not_stand(thing: str, high: float) -> None:
+    done = acted(Skill.TOUCH, PUTS)
+    (track,) = prop_tracks(done.motion, named(done, {0: thing, 1: thing}))
+    extent = np.ptp(corners(track, len(done.motion) - 1), axis=0)
+    assert extent[1] < high
+    assert (extent[1] == extent.min()) == (thing != "bottle")
+
+
 def test_what_a_hand_is_only_laid_on_stays_where_it_lies() -> None:
     motion, (track,) = seen(TOUCHES, {1: "letter"})
     assert track.held == ()

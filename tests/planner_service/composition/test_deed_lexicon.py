@@ -9,19 +9,10 @@ import pytest
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import (
-    Deed,
-    DeedRow,
-    deed_of,
-    deed_table,
-    listed_places,
-    names_things,
-    pieces_in,
-    room_of,
-    row_of,
-    typical_of,
-    without_gestures,
-)
+from motion_backend.props import held_in
+from planner_service.composition.deed_lexicon import Deed, deed_of, row_of, without_gestures
+from planner_service.composition.deed_table import DeedRow, deed_table
+from planner_service.composition.furniture_words import listed_places, names_things, pieces_in, room_of, typical_of
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.lexicon import past, third_person
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
@@ -186,7 +177,7 @@ def test_captions_show_what_is_done(text: str, caption: str) -> None:
         ("She wiped her face", Skill.LOCO, "wiping the face with the right hand"),
         ("She did the washing-up", Skill.TOUCH, "wash with both hands"),
         ("She shaved her legs", Skill.TOUCH, ""),
-        ("She put on lipstick", Skill.TOUCH, ""),
+        ("She put on lipstick", Skill.LOCO, "wiping the face with the right hand"),
         ("She buttoned her coat", Skill.LOCO, "dressing, both hands at the chest"),
         ("He hung up his coat", Skill.TOUCH, "An act of reaching high with the right hand"),
         ("He loaded the dishwasher", Skill.TOUCH, "put down with the right hand"),
@@ -561,3 +552,70 @@ def test_who_sings_at_work_does_the_work() -> None:
     shown = [deed_of(one) for one in clauses]
     assert SINGS not in [caption for one in shown if one is not None for caption in one.row.captions]
     assert SINGS in deed("sings").row.captions
+
+
+@for_each(
+    ("text", "caption", "tool"),
+    [
+        ("chops the onions", "knocking with the right hand", "knife"),
+        ("cuts it into slices", "knocking with the right hand", "knife"),
+        ("peels potatoes", "wiping with the right hand", "knife"),
+        ("butters a slice of toast", "wiping with the right hand", "butter knife"),
+        ("kneads the dough", "wash with both hands", "dough"),
+        ("irons a blouse", "wiping with the right hand", "iron"),
+        ("folds the laundry", "wash with both hands", "linen"),
+        ("makes her bed", "wash with both hands", "linen"),
+        ("cuts out a star", "stirring with the right hand", "scissors"),
+        ("sews a button on his coat", "knitting, both hands in the lap", "needle"),
+        ("repairs the chair with a hammer", "knocking with the right hand", "hammer"),
+        ("tightens the screws", "rotate with the right hand", "screwdriver"),
+        ("polishes his boots", "wiping with the right hand", "brush"),
+        ("paints the wall", "wiping with the right hand", "paintbrush"),
+        ("sprays some perfume on her neck", "wiping the face with the right hand", "perfume"),
+        ("shaves", "wiping the face with the right hand", "razor"),
+        ("smokes a cigarette", "eating while standing, right hand to the mouth", "cigarette"),
+        ("vacuums the living room", "sweeping the floor with both hands", "vacuum"),
+        ("mops the floor", "sweeping the floor with both hands", "mop"),
+    ],
+)
+def test_what_is_done_with_a_tool_is_done_with_it_in_the_hand_and_a_motion_that_fits(
+    text: str, caption: str, tool: str
+) -> None:
+    found = deed(text).row
+    assert caption in found.captions
+    assert found.holds == tool
+    assert held_in(found.skill, caption, tool) is not None
+
+
+@for_each("text", ["cuts his finger", "mops his brow", "folds her arms", "shaves her legs", "brushes her teeth"])
+def test_what_is_done_to_the_body_has_no_tool_of_a_house(text: str) -> None:
+    found = row_of(clauses_of_text(f"She {text}.")[0], "")
+    assert found is None or not found.holds
+
+
+@for_each("text", ["drops a glass", "drops the vase by accident", "fumbles with the keys"])
+def test_what_nobody_could_see_is_named_and_nobody_walks_to_a_table_for_it(text: str) -> None:
+    assert deed(text).row.why
+
+
+@for_each(
+    ("text", "caption"),
+    [
+        ("reads the message", "looking at the phone in the right hand"),
+        ("answers a message on his phone", "looking at the phone in the right hand"),
+        ("types an answer", "looking at the phone in the right hand"),
+        ("reads the letter", "reading while standing, paper in both hands"),
+        ("calls his dog", "shouting, hands cupped at the mouth"),
+        ("calls his mother", "walk while talking on the phone with the right hand"),
+        ("argues with her boyfriend on the phone", "walk while talking on the phone with the right hand"),
+    ],
+)
+def test_messages_are_on_a_screen_and_animals_are_shouted_for(text: str, caption: str) -> None:
+    assert caption in deed(text).row.captions
+
+
+def test_no_saying_stands_twice_since_the_later_one_would_never_be_found() -> None:
+    for rows in (deed_table().deed, deed_table().gesture):
+        sayings = [saying for row in rows for saying in row.says]
+        assert len(sayings) == len(set(sayings))
+        assert all(row.says for row in rows)

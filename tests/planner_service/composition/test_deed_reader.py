@@ -10,8 +10,9 @@ import pytest
 
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.beat_classifier import BeatClassifier, Likely
-from planner_service.composition.deed_lexicon import Deed, captions_of_gestures, deed_of
+from planner_service.composition.deed_lexicon import Deed, deed_of
 from planner_service.composition.deed_reader import DeedReader, learned_row
+from planner_service.composition.deed_table import captions_of_gestures
 from planner_service.composition.rest_place import only_stands_for
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe

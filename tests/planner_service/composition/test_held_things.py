@@ -52,6 +52,8 @@ def held(theme: str, *keyframes: PlannedKeyframe) -> list[str]:
         ("She looks for her keys.", ""),
         ("He puts it on the tray.", ""),
         ("She feeds the dragon.", ""),
+        ("He comes home drunk.", ""),
+        ("He sharpens the knives.", "knife"),
     ],
 )
 def test_the_thing_is_what_the_deed_is_done_to(text: str, thing: str) -> None:
@@ -147,3 +149,14 @@ def test_the_hand_that_drinks_is_the_hand_that_takes() -> None:
 def test_a_theme_that_names_nothing_leaves_all_as_it_was() -> None:
     keyframes = (to("sofa", 0), on("sofa", 0), to("floor", 1, "dancing steps, arms swinging"))
     assert with_things(beats_of("She sits on the sofa and dances."), keyframes) == keyframes
+
+
+def test_a_tool_is_held_at_its_work_and_it_is_what_it_was_used_on() -> None:
+    found = held(
+        "She irons a shirt, hangs it in the wardrobe, cuts a letter out with scissors and puts it on the fridge.",
+        at("table", 0, "wiping with the right hand").model_copy(update={"held": "iron"}),
+        at("wardrobe", 1, "put down with the right hand"),
+        at("table", 2, "stirring with the right hand"),
+        at("refrigerator", 3, "put down with the right hand"),
+    )
+    assert found == ["iron", "shirt", "scissors", "letter"]

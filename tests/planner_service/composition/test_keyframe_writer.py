@@ -15,9 +15,10 @@ from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.beat_planner import PartFinder
 from planner_service.composition.compose import compose
-from planner_service.composition.deed_lexicon import deed_of, pieces_in
-from planner_service.composition.keyframe_writer import NOT_ACTED, SPOKEN_OF
+from planner_service.composition.deed_lexicon import deed_of
+from planner_service.composition.furniture_words import pieces_in
 from planner_service.composition.request import Request
+from planner_service.composition.unacted_beats import NOT_ACTED, SPOKEN_OF
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.caption_fallbacks import usual
@@ -342,3 +343,33 @@ def test_who_stood_still_looks_out_of_the_window_in_a_moment_of_its_own() -> Non
 def test_who_sits_by_a_window_is_not_told_to_be_seen_there() -> None:
     (drinks,) = planned("She sits by the window.").beats
     assert drinks.unshown == ("by the window",)
+
+
+def test_who_smiles_between_two_looks_at_the_phone_smiles() -> None:
+    script = planned("She read the message, smiled and typed an answer.")
+    looks = [(one.caption.split()[0], one.mood) for one in script.keyframes]
+    assert looks == [("looking", Emotion.NEUTRAL), ("looking", Emotion.HAPPY)]
+    assert not any(one.why for one in script.beats)
+
+
+def test_who_vacuums_and_then_mops_has_two_tools_in_the_hands() -> None:
+    script = planned("She vacuums the living room and mops the floor.")
+    assert [one.held for one in script.keyframes] == ["vacuum", "mop"]
+
+
+def test_whoever_is_not_there_is_named_beside_what_is_acted() -> None:
+    script = planned("He yells at his sister and points at the door.")
+    assert script.beats[0].unshown == ("at his sister",)
+
+
+@for_each(
+    "theme",
+    ["It had been an awful day at work. Petra came in and sat.", "After a bad day he came in and sat."],
+)
+def test_a_bad_day_is_seen_in_who_comes_home(theme: str) -> None:
+    assert all(one.mood is Emotion.SAD for one in planned(theme).keyframes)
+
+
+def test_who_is_bored_does_not_grieve() -> None:
+    script = planned("Bored, Felix sits on the sofa and stares at the ceiling.")
+    assert all(one.mood is Emotion.NEUTRAL and "head bowed" not in one.caption for one in script.keyframes)

@@ -48,6 +48,12 @@ CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
         ("She checks the wardrobe twice.", HAND, ("twice",)),
         ("She knocks on the wardrobe twice.", KNOCKING, ()),
         ("She opens every drawer.", HAND, ("every",)),
+        ("He waters the plant on the windowsill.", AT_THE_PLANT, ("on the windowsill",)),
+        ("She reads in the armchair by the fire.", READING, ("by the fire",)),
+        ("She reads in the armchair by the window.", READING, ("by the window",)),
+        ("She reads next to the bed.", READING, ("next to the bed",)),
+        ("He writes by the desk.", WRITING, ()),
+        ("She yells at her brother.", WALKING, ("at her brother",)),
     ],
 )
 def test_what_no_keyframe_shows_of_an_acted_beat_is_said(

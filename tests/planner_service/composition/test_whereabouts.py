@@ -5,7 +5,8 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import Deed, DeedRow
+from planner_service.composition.deed_lexicon import Deed
+from planner_service.composition.deed_table import DeedRow
 from planner_service.composition.whereabouts import Spot, Whereabouts, is_held, is_worn
 from planner_service.themes.sentence_parser import Clause, clauses_of_text
 

@@ -11,7 +11,7 @@ import pytest
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.composition.deed_lexicon import DeedRow, deed_table
+from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.narration.keyframe_phrases import templates
 from planner_service.narration.story_words import pattern_at, story_words
 from planner_service.tasks.household import Takes, household

@@ -8,7 +8,8 @@ from typing import Any, Final
 from recorded import agrees
 
 from motion_backend.motion import Character
-from planner_service.composition.deed_lexicon import deed_of, object_of, room_of
+from planner_service.composition.deed_lexicon import deed_of, object_of
+from planner_service.composition.furniture_words import room_of
 from planner_service.composition.unshown import unshown
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.retold_theme import retell
