@@ -65,7 +65,9 @@ def walking_by(path: Path) -> Sampler:
     paces = np.array(weights.config["paces"]) if "paces" in weights.config else None
     network = cast(Denoiser, weights.network)
     people = tuple(weights.config.get("learned_from", ()))
-    return Sampler(network, weights.scale, schedule, gaits=gaits, strides=strides, paces=paces, learned_from=people)
+    return Sampler(
+        network, weights.scale, schedule, fresh=True, gaits=gaits, strides=strides, paces=paces, learned_from=people
+    )
 
 
 @lru_cache(maxsize=2)

@@ -22,6 +22,8 @@ from motion_backend.walk_generator import Ahead, Frames, Walker
 CAPTION: Final = "a person walks"
 """What all plain walks are called among others in what was learned from; how fast says the goal."""
 SEEDS: Final = 2**31
+SETTLED: Final = 0.2
+"""Seconds in which half of what a body is off the stride of its gait is gone: in less the swinging foot is flung."""
 
 
 @dataclass
@@ -94,7 +96,7 @@ def _eased(past: Frames, found: Frames) -> Frames:
         found.root.astype(np.float32), found.local.astype(np.float32), np.zeros((len(found), 4), np.float32),
         build_skeleton(), np.zeros(len(found), np.int32),
     )  # fmt: skip
-    eased = joined(History.of(past.root, past.local, still), motion)
+    eased = joined(History.of(past.root, past.local, still), motion, SETTLED, SETTLED)
     return Frames(eased.root_positions.astype(np.float64), eased.local_rotations.astype(np.float64))
 
 

@@ -70,23 +70,22 @@ def _left(schedule: NoiseSchedule, device: str) -> Tensor:
     return torch.from_numpy(schedule.alpha_bars).to(device)
 
 
-def ddpm_step(schedule: NoiseSchedule, x: Tensor, clean: Tensor, step: int, noise: Tensor) -> Tensor:
-    """x of the step before, drawn from q(x_{t-1} | x_t, clean): Ho et al. 2020, Eq. 6 and 7."""
-    if step == 0:
-        return clean
-    bars, beta = schedule.alpha_bars, schedule.betas[step]
-    before, now = bars[step - 1], bars[step]
-    mean = (np.sqrt(before) * beta * clean + np.sqrt(1 - beta) * (1 - before) * x) / (1 - now)
-    return mean + np.sqrt((1 - before) / (1 - now) * beta) * noise
+def ddim_step(
+    schedule: NoiseSchedule, x: Tensor, clean: Tensor, step: int, following: int | None, fresh: Tensor | None = None
+) -> Tensor:
+    """x at the `following` step (None: the clean end): Song et al. 2021, Eq. 12.
 
-
-def ddim_step(schedule: NoiseSchedule, x: Tensor, clean: Tensor, step: int, following: int | None) -> Tensor:
-    """x at the `following` step (None: the clean end), without noise: Song et al. 2021, Eq. 12 with σ = 0."""
+    Without `fresh` noise with σ = 0: what there is of noise is kept. With it as much of it is fresh as DDPM draws
+    (η = 1 in Eq. 16): from each step to the one before it this is q(x_{t-1} | x_t, clean) of Ho et al. 2020.
+    """
     if following is None:
         return clean
     now, then = schedule.alpha_bars[step], schedule.alpha_bars[following]
     noise = (x - np.sqrt(now) * clean) / np.sqrt(1 - now)
-    return np.sqrt(then) * clean + np.sqrt(1 - then) * noise
+    if fresh is None:
+        return np.sqrt(then) * clean + np.sqrt(1 - then) * noise
+    drawn = (1 - then) / (1 - now) * (1 - now / then)
+    return np.sqrt(then) * clean + np.sqrt(1 - then - drawn) * noise + np.sqrt(drawn) * fresh
 
 
 def pairs(steps: Sequence[int]) -> list[tuple[int, int | None]]:

@@ -6,6 +6,7 @@ The noise process is noise_schedule.py, the network denoiser.py, what pulls its 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -16,12 +17,14 @@ from motion_backend.diffusion.conditions import Conditions
 from motion_backend.diffusion.denoiser import Denoiser
 from motion_backend.diffusion.guidance import Guide
 from motion_backend.diffusion.motion_features import FEATURES, HISTORY, PLACES, WINDOW
-from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step, ddpm_step
+from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step, pairs
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 
 DDIM_STEPS: Final = 10
 """Of sampling, where nothing else is asked for: five are as good, twenty are no better."""
+ORDINARY: Final = 0.9
+"""Metres a second below which nobody's pace is ordinary: who was recorded so went round bends or hardly in stride."""
 LEGS: Final = [
     PLACES.start + 3 * (INDEX[name] - 1) + axis for name in ("left_ankle", "right_ankle") for axis in (0, 1, 2)
 ]
@@ -54,7 +57,9 @@ class Sampler:
     scale: Scale
     schedule: NoiseSchedule = field(default_factory=NoiseSchedule)
     steps: int = DDIM_STEPS
-    """Of DDIM; 0: all of DDPM's."""
+    """Of DDIM."""
+    fresh: bool = False
+    """Whether each step draws fresh noise; of all the schedule's steps these are DDPM's."""
     gaits: int = 0
     """Of how many people's walks are told apart."""
     strides: Array | None = None
@@ -64,9 +69,17 @@ class Sampler:
     learned_from: tuple[str, ...] = ()
     """Everybody who was recorded in what it has learned: they are no judges of it."""
 
+    @cached_property
+    def crowd(self) -> tuple[int, ...]:
+        """Whose walks bodies have: of all who are told apart those of an ordinary pace, where that is known."""
+        gaits = range(1, self.gaits + 1)
+        if self.paces is None:
+            return tuple(gaits)
+        return tuple(gait for gait in gaits if self.paces[gait - 1] >= ORDINARY) or tuple(gaits)
+
     def gait_of(self, seed: int) -> int:
         """Whose walk a body of that seed has; 0 where none are told apart."""
-        return 1 + seed % self.gaits if self.gaits else 0
+        return self.crowd[seed % len(self.crowd)] if self.crowd else 0
 
     def pace_of(self, gait: int) -> float | None:
         """Metres a second at which he walked whose gait it is; None where that is not known."""
@@ -99,15 +112,11 @@ class Sampler:
         def fresh() -> Tensor:
             return torch.from_numpy(rng.standard_normal(shape, dtype=np.float32))
 
-        chosen = self.schedule.spaced(self.steps or self.schedule.steps)
         x, clean = fresh(), torch.zeros(shape)
-        for step, following in zip(chosen, (*chosen[1:], None), strict=True):
+        for step, following in pairs(self.schedule.spaced(self.steps)):
             at = torch.full((len(known),), step)
             clean = self.denoiser(torch.cat([known, x], dim=1), at, tokens)[:, HISTORY:]
             if guide is not None:
                 clean = self.scale.encode(guide(self.scale.decode(clean)))
-            if self.steps:
-                x = ddim_step(self.schedule, x, clean, step, following)
-            else:
-                x = ddpm_step(self.schedule, x, clean, step, fresh())
+            x = ddim_step(self.schedule, x, clean, step, following, fresh() if self.fresh else None)
         return clean

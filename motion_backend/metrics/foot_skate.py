@@ -40,6 +40,8 @@ def skate_ratio(body: Kinematics) -> float:
 
 def in_flight(body: Kinematics) -> NDArray[np.bool_]:
     """Whether a body flies in a frame or the next, as in a run. (T - 1,)."""
+    if len(body.positions) < 2:  # which falls nowhere
+        return np.zeros(0, dtype=bool)
     drawn = np.gradient(np.gradient(body.positions[:, 0, 1])) * body.motion.fps**2
     air = (body.soles[..., 1].min(axis=(1, 2)) > IN_AIR * body.motion.skeleton.scale) & (drawn < -FALLS)
     return np.asarray(air[1:] | air[:-1])

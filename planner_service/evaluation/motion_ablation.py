@@ -54,7 +54,9 @@ class Ablation:
     untold: tuple[str, ...] = ()
     """Of text, scene, pelvis, hand and frame."""
     steps: int = DDIM_STEPS
-    """Of DDIM; 0: all of DDPM's."""
+    """Of DDIM."""
+    fresh: bool | None = None
+    """Whether each step draws fresh noise; None: as it ships."""
     walks: bool = True
     """Whether walks know of it: they see no scene, and their frame number is zero as it is."""
 
@@ -64,10 +66,11 @@ ABLATIONS: Final = (
     Ablation("no scene", ("scene",), walks=False),
     Ablation("no text", ("text",)),
     Ablation("no frame numbers", ("frame",), walks=False),
+    Ablation("no fresh noise", fresh=False),
     Ablation("5 steps", steps=5),
     Ablation("20 steps", steps=20),
-    Ablation("100 steps", steps=100),
-    Ablation("100 steps of DDPM", steps=0),
+    Ablation("100 steps of DDIM", steps=100, fresh=False),
+    Ablation("100 steps of DDPM", steps=100, fresh=True),
 )
 
 
@@ -81,7 +84,8 @@ class AblatedSampler(Sampler):
     def of(sampler: Sampler, ablation: Ablation) -> AblatedSampler:
         """The same weights under an ablation."""
         own = {field.name: getattr(sampler, field.name) for field in fields(Sampler)}
-        return AblatedSampler(**{**own, "steps": ablation.steps}, untold=ablation.untold)
+        fresh = sampler.fresh if ablation.fresh is None else ablation.fresh
+        return AblatedSampler(**{**own, "steps": ablation.steps, "fresh": fresh}, untold=ablation.untold)
 
     def windows(self, history: Array, given: Conditions, seed: int | list[int], guide: Guide | None = None) -> Array:
         """As a sampler's, but for what is not told."""

@@ -23,7 +23,7 @@ from motion_backend.diffusion.conditions import Conditions
 from motion_backend.diffusion.denoiser import PRESETS, Denoiser, DenoiserSizes
 from motion_backend.diffusion.losses import CONTACT_LOSSES, WALK_LOSSES, losses
 from motion_backend.diffusion.motion_features import WINDOW, HeadingFrame, Poses, to_features
-from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step, ddpm_step, pairs
+from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step, pairs
 from motion_backend.diffusion.sampler import Scale
 from motion_backend.diffusion.scene_encoder import SceneSizes
 from motion_backend.diffusion.train import TrainConfig as Diffusing
@@ -116,7 +116,12 @@ def diffusion() -> dict[str, Any]:
         ],
         "noised": rows(schedule.noised(clean, noise, torch.tensor([0, 99]))),
         "steps": steps,
-        "ddpm": rows(torch.stack([ddpm_step(schedule, clean[0], noise[0], step, noise[1]) for step in (0, 50, 99)])),
+        "ddpm": rows(
+            torch.stack([
+                ddim_step(schedule, clean[0], noise[0], step, step - 1 if step else None, noise[1])
+                for step in (0, 50, 99)
+            ])
+        ),
         "ddim": rows(torch.stack([ddim_step(schedule, clean[0], noise[0], *step) for step in steps])),
     }
 

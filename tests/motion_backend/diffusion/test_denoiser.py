@@ -109,16 +109,16 @@ def test_history_comes_out_as_it_went_in() -> None:
     assert not torch.equal(found[:, HISTORY:], noised[:, HISTORY:])
 
 
-@pytest.mark.parametrize("steps", [0, 10])
-def test_history_is_clean_at_every_step_of_sampling(steps: int) -> None:
-    """With DDPM's hundred steps and with ten of DDIM."""
+@pytest.mark.parametrize(("steps", "fresh"), [(100, True), (10, True), (10, False)])
+def test_history_is_clean_at_every_step_of_sampling(steps: int, fresh: bool) -> None:
+    """With DDPM's hundred steps, and with ten of DDIM with and without fresh noise."""
     net, seen = network(replace(TINY, scene=None)), []
     net.register_forward_pre_hook(lambda _module, given: seen.append((given[0][:, :HISTORY].clone(), given[1])))
     history = np.random.default_rng(0).normal(size=(2, HISTORY, FEATURES))
-    sampler = Sampler(net, PLAIN, steps=steps)
+    sampler = Sampler(net, PLAIN, steps=steps, fresh=fresh)
     found = sampler.windows(history, told(2), 7)
     assert found.shape == (2, WINDOW - HISTORY, FEATURES)
-    assert [int(step[0]) for _, step in seen] == list(NoiseSchedule().spaced(steps or 100))
+    assert [int(step[0]) for _, step in seen] == list(NoiseSchedule().spaced(steps))
     for first, _ in seen:
         assert np.allclose(first.numpy(), history, atol=1e-6)
     assert np.array_equal(found, sampler.windows(history, told(2), 7))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import torch
 
-from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step, ddpm_step
+from motion_backend.diffusion.noise_schedule import NoiseSchedule, ddim_step
 
 SCHEDULE = NoiseSchedule()
 
@@ -34,7 +34,7 @@ def test_noised_windows_have_the_mean_and_variance_of_the_step() -> None:
 
 
 @pytest.mark.parametrize("step", [1, 40, 99])
-def test_a_ddpm_step_is_bayes_rule_on_a_grid(step: int) -> None:
+def test_a_step_back_with_fresh_noise_is_bayes_rule_on_a_grid(step: int) -> None:
     """q(x_{t-1} | x_t, x_0) ∝ q(x_t | x_{t-1}) q(x_{t-1} | x_0), multiplied out over a fine grid of x_{t-1}."""
     clean, x, beta, before = 0.7, -0.4, SCHEDULE.betas[step], SCHEDULE.alpha_bars[step - 1]
     grid = np.linspace(-6, 6, 200_001)
@@ -46,7 +46,7 @@ def test_a_ddpm_step_is_bayes_rule_on_a_grid(step: int) -> None:
     deviation = float(np.sqrt(weights @ (grid - mean) ** 2))
     at, one = (torch.tensor([value], dtype=torch.float64) for value in (x, clean))
     for noise in (0.0, 1.0):
-        found = ddpm_step(SCHEDULE, at, one, step, torch.tensor([noise], dtype=torch.float64))
+        found = ddim_step(SCHEDULE, at, one, step, step - 1, torch.tensor([noise], dtype=torch.float64))
         assert found.item() == pytest.approx(mean + noise * deviation, abs=1e-4)
 
 
@@ -57,7 +57,7 @@ def test_a_ddim_step_keeps_the_noise_that_it_came_with() -> None:
     found = ddim_step(SCHEDULE, x, clean, 80, 35)
     assert torch.allclose(found, np.sqrt(bars[35]) * clean + np.sqrt(1 - bars[35]) * noise, atol=1e-6)
     assert torch.equal(ddim_step(SCHEDULE, x, clean, 80, None), clean)
-    assert torch.equal(ddpm_step(SCHEDULE, x, clean, 0, noise), clean)
+    assert torch.equal(ddim_step(SCHEDULE, x, clean, 0, None, noise), clean)
 
 
 @pytest.mark.parametrize("width", [0.5, 1.0, 2.0])
@@ -71,10 +71,8 @@ def test_noise_becomes_the_data_where_the_guess_is_the_best_there_is(width: floa
         left = SCHEDULE.alpha_bars[step]
         told = width**2 * np.sqrt(left) / (width**2 * left + 1 - left)
         guess = 1.0 + told * (x - np.sqrt(left))
-        if stochastic:
-            x = ddpm_step(SCHEDULE, x, guess, step, torch.randn(len(x), generator=made, dtype=torch.float64))
-        else:
-            x = ddim_step(SCHEDULE, x, guess, step, following)
+        fresh = torch.randn(len(x), generator=made, dtype=torch.float64) if stochastic else None
+        x = ddim_step(SCHEDULE, x, guess, step, following, fresh)
     assert float(x.mean()) == pytest.approx(1.0, abs=0.05)
     assert float(x.std()) == pytest.approx(width, rel=0.08)
 

@@ -55,6 +55,7 @@ def test_a_body_that_falls_through_the_air_slides_on_nothing_and_one_that_hovers
     assert foot_skate.in_flight(flight).all()
     assert foot_skate.skate_ratio(flight) == foot_skate.support_slip(flight) == 0.0
     assert foot_skate.skate_ratio(gliding(1.2, 0.03, frames=6)) == 1.0
+    assert foot_skate.support_slip(gliding(1.2, 0.03, frames=1)) == 0.0  # it had no time to
     assert foot_skate.support_slip(gliding(1.2, 0.03, frames=6)) == pytest.approx(120, rel=1e-3)
 
 
