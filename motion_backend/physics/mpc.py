@@ -47,7 +47,7 @@ OFFSET: Final = 4.0
 """Price of a control away from the plan's, per rad²."""
 CHANGE: Final = 60.0
 """Price of the change of that from frame to frame, per rad²: feet slide a third as fast with it."""
-CHANGE_ON_FLOOR: Final = 240.0
+CHANGE_ON_FLOOR: Final = 480.0
 """The same where the body goes down to lie, lies, or gets up from the floor: more than its feet touches something."""
 ON_FLOOR: Final = (Doing.GOES_DOWN, Doing.LIES, Doing.RISES)
 SLIDING: Final = 10.0
@@ -103,7 +103,9 @@ SWINGING: Final[dict[Doing, tuple[Array, ...]]] = {
     Doing.STANDS_UP: _by_leg(PRICES_PELVIS, 5.0),
 }
 """And so do the joints of the leg that swings, left or right, while the other stands; on one's knees half as much."""
-PRICES_LYING: Final[Array] = _legs_first(PRICES_PELVIS, 4.0, "left", "right")
+CALMED: Final = 10.0
+"""So much more do joint speeds count where the body rolls: limbs in the air shook as what carries it changed."""
+PRICES_LYING: Final[Array] = _legs_first(PRICES_PELVIS, 4.0, "left", "right") * np.repeat([1.0, CALMED], [NV + 6, NU])
 """Where it lies down, or gets up from the floor, legs count more too: feet that the plan lifts were drawn over the
 floor."""
 

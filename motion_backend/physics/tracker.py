@@ -20,9 +20,9 @@ from motion_backend.rotations import Array
 
 EFFORTS: Final = (Effort(), Effort(24, 2), Effort(28, 2, 2), Effort(30, 2, 2))
 """The usual one, and what is tried after the first, the second and the third fall at a place."""
-AT_LEAST: Final = {Doing.RISES: 2, Doing.GOES_DOWN: 1, Doing.LIES: 1}
-"""Which of them is begun with where more than feet touches something: with less the body fell as it got up from the
-floor, and staggered on one knee."""
+AT_LEAST: Final = {Doing.RISES: 2, Doing.STANDS_UP: 1, Doing.GOES_DOWN: 1, Doing.LIES: 1}
+"""Which of them is begun with between the floor and standing: with less the body fell as it got up, and staggered on
+one knee and one foot."""
 UNPREPARED: Final = 6
 """Rounds in which a horizon is improved that no last one has left controls for."""
 BACK: Final = (1.3, 2.0, 3.0)

@@ -23,8 +23,9 @@ from motion_backend.physics.mjcf_scene import SLOTS, models_of, near_way
 from motion_backend.physics.mpc import Controller, moment_of
 from motion_backend.physics.reference import Reference
 from motion_backend.physics.task import plan_of
+from motion_backend.procedural.lie.lie_on_floor import KNEE
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import INDEX
+from motion_backend.skeleton import HAND_REST, INDEX
 
 FEET = [INDEX[f"{side}_{joint}"] for side in ("left", "right") for joint in ("ankle", "foot")]
 OTHERS = [
@@ -145,6 +146,23 @@ def test_arms_that_swing_through_the_floor_are_led_over_it_and_others_left_alone
     assert turned.max() < 0.3, "an arm jumps"
     high = Reference.of(plan, skeleton)
     np.testing.assert_allclose(high.qpos[:, :3], plan.roots)
+
+
+def test_knees_and_hands_that_a_plan_bears_on_touch_the_floor_and_are_not_in_it() -> None:
+    motion, mujoco, model = lain("floor", "lying still").motion, engine(), empty_room().fine
+    data = mujoco.MjData(model)
+    places = motion.joint_positions()
+    qpos = Reference.of(plan_of(motion), motion.skeleton).qpos
+    for side in ("left", "right"):
+        for joint, ball, height in (("knee", "knee", KNEE), ("wrist", "hand", HAND_REST)):
+            bears = np.flatnonzero(np.abs(places[:, INDEX[f"{side}_{joint}"], 1] - height) < 0.002)
+            assert len(bears) > 10
+            for frame in bears:
+                data.qpos[:] = qpos[frame]
+                mujoco.mj_kinematics(model, data)
+                own = model.geom(f"{side}_{ball}").id
+                # Hands are a little aside where arms reach without their collars.
+                assert data.geom_xpos[own, 1] - model.geom_size[own, 0] == pytest.approx(0.0, abs=0.01)
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,7 @@ from motion_backend.physics.mpc import SLIDING, Controller, Effort, Moment, mome
 from motion_backend.physics.physics_options import PhysicsOptions, give_physics
 from motion_backend.physics.reference import Doing, Plan
 from motion_backend.physics.task import plan_of
-from motion_backend.physics.tracker import AT_LEAST, EFFORTS, Tracked, Tracker
+from motion_backend.physics.tracker import AT_LEAST, EFFORTS, UNPREPARED, Tracked, Tracker
 
 
 def away(plan: Plan, done: Tracked) -> np.ndarray:
@@ -190,6 +190,19 @@ def test_getting_up_from_the_floor_is_looked_farther_ahead_and_the_pelvis_comes_
     assert (found[1][:6] > found[0][:6]).all()
     arms = [joint.qvel for joint in SIMULATED if joint.name.endswith(("shoulder", "elbow", "trunk", "neck"))]
     np.testing.assert_array_equal(found[1][arms], found[0][arms])
+
+
+def test_a_plan_begun_without_controls_for_it_is_improved_more_often(monkeypatch: pytest.MonkeyPatch) -> None:
+    tracker, rounds = tracker_of(plan_of(walk())), []
+    improve = Controller.improve
+
+    def counted(self: Controller, now: Moment, at: int, ahead: np.ndarray, effort: Effort) -> object:
+        rounds.append(effort.rounds)
+        return improve(self, now, at, ahead, replace(effort, horizon=6, rounds=1))
+
+    monkeypatch.setattr(Controller, "improve", counted)
+    tracker.track(moment_of(tracker.reference, 0), np.zeros((0, NU)), 8)
+    assert rounds == [UNPREPARED, EFFORTS[0].rounds]
 
 
 def prices(plan: Plan, at: int) -> np.ndarray:
