@@ -74,6 +74,18 @@ class Way:
 
 
 @table
+class Tipped:
+    """How what is drunk from is tipped at the mouth."""
+
+    deg: float
+    """From upright, wholly at the mouth."""
+    rim_m: float
+    """How high its rim is over its origin, and"""
+    wide_m: float
+    """how far from its middle."""
+
+
+@table
 class Called:
     """What one shape is called, and how it is held."""
 
@@ -124,6 +136,7 @@ class Props:
     shapes: dict[str, tuple[PropPart, ...]]
     ways: dict[str, Way]
     called: tuple[Called, ...]
+    tipped: dict[str, Tipped]
     held: tuple[Held, ...]
 
     def __post_init__(self) -> None:
@@ -132,6 +145,7 @@ class Props:
         held = {grip.prop for row in self.held for grip in row.props}
         require_unlike("called", [f"{row.shape} {word}" for row in self.called for word in row.words.split()])
         require_known("called.shape", [row.shape for row in self.called], self.shapes)
+        require_known("tipped", self.tipped, self.shapes)
         require_known("called.way", [row.way for row in self.called], self.ways)
         require_known("called.instead", [prop for row in self.called for prop in row.instead], held)
         require_known("shapes", self.shapes, held | {row.shape for row in self.called})
