@@ -36,6 +36,7 @@ SETTLED: Final = 0.3
 """The share of the lifted frames after which hands are where they hold it."""
 COMPARED: Final = 24
 """Frames among these that others are compared with."""
+AT_HAND: Final = 0
 LIFTS: Final = 0.3
 """Half the seconds in which what hangs in a hand is turned as its caption has it."""
 BEFORE, AFTER = 0.8, 2.0
@@ -56,12 +57,12 @@ def prop_tracks(motion: Motion, role: Role) -> tuple[PropTrack, ...]:
 
 def _stays(motion: Motion, role: Role) -> NDArray[np.int64]:
     """A number for every stretch of frames in which somebody stays where they are: of keyframes in which they sit all
-    in a row, else of one. (T,)."""
-    found, number, before = np.zeros(len(motion), dtype=np.int64), 0, None
+    in a row, else of one; AT_HAND where hands are at a piece of furniture. (T,)."""
+    found, number, before = np.zeros(len(motion), dtype=np.int64), AT_HAND, None
     for start, stop in spans_of(motion):
         skill, _ = role.captions.get(int(motion.actions[start]), (None, ""))
         number += not (skill is before is Skill.SITDOWN)
-        found[start:stop], before = number, skill
+        found[start:stop], before = AT_HAND if skill is Skill.TOUCH else number, skill
     return found
 
 
@@ -187,13 +188,13 @@ def _between(hands: Hands, grip: Grip, there: Flags) -> Iterator[PropTrack]:
 
 
 def _lying(hands: Hands, grip: Grip, there: Flags, stays: NDArray[np.int64]) -> Iterator[PropTrack]:
-    """What lies where hands use it: once for as long as somebody stays there."""
+    """What lies where hands use it: once for as long as somebody stays there, and on furniture all the time."""
     runs = runs_of(there)
     for stay in np.unique(stays[there]).tolist():
         mine = [run for run in runs if (stays[slice(*run)] == stay).any()]
         first, last = max(mine, key=lambda run: run[1] - run[0])
         positions, turns, size = hands.placed(grip, first, last)
-        frames = np.flatnonzero(stays == stay)
+        frames = np.arange(len(there)) if stay == AT_HAND else np.flatnonzero(stays == stay)
         start, long = int(frames[0]), len(frames)
         lies, sizes = np.ones(long, dtype=bool), np.full(long, size)
         places, turned = np.tile(positions[0], (long, 1)), np.tile(turns[0], (long, 1))
