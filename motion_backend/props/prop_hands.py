@@ -102,7 +102,7 @@ class Hands:
         return rotations.rotvec_to_quat(np.radians(degrees) * self._near(palm)[:, None] * self._tip_axis())
 
     def to_lips(self, positions: Array, turns: Array, tips: Array, rim: tuple[float, float], palm: Array) -> Array:
-        """How far what is drunk from moves until its rim, so high over its origin and so wide, is at the lips. (T, 3)."""
+        """How far what is drunk from moves until its rim, so high and so wide, is at the lips. (T, 3)."""
         high, wide = rim
         nearest = rotations.rotate(tips, rotations.cross(self._tip_axis(), UP[None]))
         lip = positions + rotations.rotate(turns, high * UP) + wide * nearest
