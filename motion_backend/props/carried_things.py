@@ -64,7 +64,7 @@ def carried_things(
         for busy, frames in others:
             labels[(labels == number) & frames & bool({*_hands_of(holder)} & {*busy})] = NOWHERE
     for start, stop in runs_of(labels != NOWHERE):
-        track = _track(hands, shape.shape, places.holders, labels, (start, stop))
+        track = passed_on(hands, shape.shape, places.holders, labels, (start, stop))
         yield replace(track, taken=tuple(sorted(frame for frame in places.taken if start <= frame < stop)))
 
 
@@ -182,14 +182,7 @@ class _Places:
             self._turn(frame - 1, NOWHERE)
 
     def _in_hand(self, hand: str) -> int:
-        """In one hand, hanging or lifted."""
-        way = prop_table().ways[self.shape.way]
-        offset = np.array(way.offset_m if self.shape.offset_m is None else self.shape.offset_m)
-        if way.beside:
-            offset = offset - [0.0, 0.0, float(prop_shape(self.shape.shape).vertices[:, 2].min())]
-        x, y, z = offset.tolist()
-        grip = Grip(self.shape.shape, "left" if hand == "left" else "right", way.along, way.front, "along", (x, y, z))
-        return self._number(grip)
+        return self._number(in_hand(self.shape, hand))
 
     def _number(self, holder: Grip | Lying) -> int:
         known = [number for number, one in enumerate(self.holders) if isinstance(holder, Grip) and one == holder]
@@ -213,16 +206,31 @@ class _Places:
         return Lying(at + inward * ahead - [0.0, float(turned[:, 1].min()), 0.0], turn)
 
 
+def in_hand(shape: Called, hand: str) -> Grip:
+    """How a thing is in one hand where no caption says how, hanging or lifted."""
+    way = prop_table().ways[shape.way]
+    offset = np.array(way.offset_m if shape.offset_m is None else shape.offset_m)
+    if way.beside:
+        offset = offset - [0.0, 0.0, float(prop_shape(shape.shape).vertices[:, 2].min())]
+    x, y, z = offset.tolist()
+    return Grip(shape.shape, "left" if hand == "left" else "right", way.along, way.front, "along", (x, y, z))
+
+
 def _hands_of(grip: Grip) -> tuple[int, ...]:
     return (0, 1) if grip.hand == "both" else (0,) if grip.hand == "left" else (1,)
 
 
-def _track(
-    hands: Hands, prop: str, holders: Sequence[Grip | Lying], labels: NDArray[np.int64], span: tuple[int, int]
+def passed_on(
+    hands: Hands,
+    prop: str,
+    holders: Sequence[Grip | Lying],
+    labels: NDArray[np.int64],
+    span: tuple[int, int],
+    seconds: float = CHANGES,
 ) -> PropTrack:
-    """A thing from one frame to another, passed softly from each holder to the next."""
+    """A thing from one frame to another, passed softly from each holder to the next, in twice these seconds."""
     start, stop = span
-    own, half = labels[start:stop], max(round(CHANGES * hands.fps), 1)
+    own, half = labels[start:stop], max(round(seconds * hands.fps), 1)
     begins = [0, *(np.flatnonzero(np.diff(own)) + 1).tolist()]
     positions, turns, sizes = _held_by(hands, holders[own[0]], start, stop)
     for begin in begins[1:]:

@@ -10,13 +10,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from motion_backend import rotations
 from motion_backend.body.cast import Role, Worked
-from motion_backend.motion import Motion
+from motion_backend.motion import FPS, Motion
 from motion_backend.props.prop_frames import PropTrack, runs_of, spans_of
 from motion_backend.props.prop_hands import Hands
 from motion_backend.props.prop_shapes import painted_shape
@@ -30,6 +30,8 @@ AT: Final = 0.03
 """A hand is at a thing while it is no farther from it than this from its nearest (metres)."""
 NEAR: Final = 0.45
 """From farther away nothing is opened (metres)."""
+RECOILS: Final = (0.05, 0.27)
+"""The share of its way that a slammed front springs back, and the seconds until it is shut again."""
 IN_THE_WAY: Final = 0.12
 """A door keeps this far from the middle of hips and head (metres)."""
 OVERHEAD: Final = 1.3
@@ -40,7 +42,6 @@ AGAIN: Final = 3.0
 """Seconds for which one who reaches in leaves it open, to reach in again."""
 SHUT: Final = 1e-3
 """A share that is as good as none."""
-Swing = Literal["opens", "shuts", "slams"]
 _SLAM: Final = re.compile(r"^slamming\b")
 
 
@@ -153,41 +154,63 @@ def _clearance(front: Mechanism, bodies: Array) -> Array:
     return np.asarray(np.linalg.norm(away - np.clip(part, 0.0, 1.0)[..., None] * way, axis=-1).min(axis=1))
 
 
-def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[tuple[Swing, int, int]]:
-    """Whether a front is opened, shut or slammed, from when on and until when, one after the other."""
+@dataclass(frozen=True)
+class _Swing:
+    """A front that opens, from when on, or shuts, until when."""
+
+    opens: bool
+    since: int
+    until: int
+    slams: bool = False
+
+
+def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[_Swing]:
+    """What a front does, one after the other."""
     is_open = deeds[0].worked.does == "close"
     for deed, following in zip(deeds, [*deeds[1:], None], strict=True):
         if deed.worked.does == "close":
             long = round((SLAMS if deed.slams else MOVES) * fps)
             since = max(deed.first - long, 0)
-            way: Swing = "slams" if deed.slams else "shuts"
-            yield way, since, max(deed.first, min(since + long, round(MOVES * fps)))
+            yield _Swing(False, since, max(deed.first, min(since + long, round(MOVES * fps))), deed.slams)
             is_open = False
             continue
         if not is_open:
-            yield "opens", deed.first, deed.first
+            yield _Swing(True, deed.first, deed.first)
         soon = following is not None and following.first - deed.last < AGAIN * fps
         awaited = following is not None and following.worked.does == "close"
         is_open = is_open or deed.worked.does == "open" or soon or awaited
         if not is_open:
-            yield "shuts", deed.last, deed.last + round(MOVES * fps)
+            yield _Swing(False, deed.last, deed.last + round(MOVES * fps))
 
 
 def _shares(front: Mechanism, hands: Hands, motion: Motion, deeds: Sequence[_Deed]) -> Array:
     """How far open a front is, 0 to 1. (T,)."""
     shares = np.full(len(motion), float(deeds[0].worked.does == "close"))
-    for way, since, until in _swings(deeds, motion.fps):
-        if way == "opens":
-            shares[since:] = _eased(_opening(front, hands, motion, deeds[0].worked.piece, since))
-            continue
-        left = np.clip((until - np.arange(since, len(motion))) / max(until - since, 1), 0.0, 1.0)
-        # What is slammed is fastest as it strikes.
-        shares[since:] = shares[since] * (1.0 - (1.0 - left) ** 2 if way == "slams" else _eased(left))
+    for swing in _swings(deeds, motion.fps):
+        if swing.opens:
+            shares[swing.since :] = _eased(_opening(front, hands, motion, deeds[0].worked.piece, swing.since))
+        else:
+            left = _slammed if swing.slams else _shut
+            frames = np.arange(swing.since, len(motion), dtype=np.float64)
+            shares[swing.since :] = shares[swing.since] * left(swing, frames)
     return shares
 
 
 def _eased(shares: Array) -> Array:
     return np.asarray(shares * shares * (3 - 2 * shares))
+
+
+def _shut(swing: _Swing, frames: Array) -> Array:
+    """How far open a front still is in some frames that is shut softly, 1 to 0."""
+    return _eased(np.clip((swing.until - frames) / max(swing.until - swing.since, 1), 0.0, 1.0))
+
+
+def _slammed(swing: _Swing, frames: Array) -> Array:
+    """The same of one that flies with the hand, faster and faster, hits its frame, and springs back a little."""
+    far, seconds = RECOILS
+    flown = np.clip((frames - swing.since) / max(swing.until - swing.since, 1), 0.0, 1.0)
+    back = np.clip((frames - swing.until) / (seconds * FPS), 0.0, 1.0)
+    return np.asarray(1.0 - flown**2 + far * np.sin(np.pi * back))
 
 
 def _opening(front: Mechanism, hands: Hands, motion: Motion, piece: Placed, since: int) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.motion import Motion
-from motion_backend.props.prop_table import Direction, Grip
+from motion_backend.props.prop_table import Direction, Grip, prop_table
 from motion_backend.rotations import Array
 from motion_backend.skeleton import ARM_LENGTH, INDEX
 
@@ -17,11 +17,13 @@ PALM: Final = (0.075, 0.02)
 """From the wrist to the middle of the palm, along the fingers and out of the hand (metres at 1.70 m)."""
 EYES, MOUTH, JAW = (0.0, 0.085, 0.09), (0.0, 0.015, 0.10), (0.0, 0.85, -0.53)
 """In the head's frame: places (metres at 1.70 m), and the way from the chin past the ear."""
-POURED_FROM, POURED_WITHIN = 0.26, 0.10
-"""A palm so near to the mouth begins to tip what is drunk from, and has tipped it so much nearer (metres at 1.70 m):"""
-POURED_LEVEL, POURED_RATIO, POURED_MOST = 0.4, 1.8, 1.0
-"""by this with a level head, and by so much more for every radian that it is back, but no farther (radians)."""
+LIPS: Final = (0.0, 0.012, 0.112)
+"""Where a rim is that is drunk from, in the head's frame (metres at 1.70 m)."""
 UP: Final = np.array([0.0, 1.0, 0.0])
+TIPS: Final = (0.30, 0.16)
+"""Metres between palm and mouth (at 1.70 m) from which on what is drunk from is tipped, and from which on wholly."""
+TO_LIPS: Final = 0.08
+"""How far it may slip in the hand for its rim to be at the lips (metres)."""
 LEFT, AHEAD = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 _SIDES: Final = ("left", "right")
 
@@ -77,7 +79,12 @@ class Hands:
         turns = rotations.compose(_framed(along, front, grip.keeps == "front"), euler_to_quat(grip.turned_deg))
         # What both hands hold apart is as large as whoever holds it.
         size = self.scale if both else 1.0
+        tipped = prop_table().tipped.get(grip.prop)
+        tips = None if tipped is None or both else part.tipping(tipped.deg, origin)
+        turns = turns if tips is None else rotations.compose(tips, turns)
         positions = origin + rotations.rotate(turns, size * np.array(grip.offset_m))
+        if tips is not None and tipped is not None:
+            positions = positions + part.to_lips(positions, turns, tips, (tipped.rim_m, tipped.wide_m), origin)
         if grip.stands:
             way = rotations.rotate(turns, UP)
             positions = positions - way * (positions[:, 1:2] / np.maximum(way[:, 1:2], 0.3))
@@ -90,6 +97,31 @@ class Hands:
         cut = slice(start, stop)
         arrays = (self.wrists, self.palms, self.turns, self.chest, self.head, self.head_at)
         return Hands(self.fps, self.scale, *(array[cut] for array in arrays))
+
+    def tipping(self, degrees: float, palm: Array) -> Array:
+        """Turns of what is drunk from to the face, the farther the nearer a palm (T, 3) is to the mouth. (T, 4)."""
+        return rotations.rotvec_to_quat(np.radians(degrees) * self._near(palm)[:, None] * self._tip_axis())
+
+    def to_lips(self, positions: Array, turns: Array, tips: Array, rim: tuple[float, float], palm: Array) -> Array:
+        """How far what is drunk from moves until its rim, so high and so wide, is at the lips. (T, 3)."""
+        high, wide = rim
+        nearest = rotations.rotate(tips, rotations.cross(self._tip_axis(), UP[None]))
+        lip = positions + rotations.rotate(turns, high * UP) + wide * nearest
+        gap = self._in_head(LIPS) - lip
+        far = np.maximum(np.linalg.norm(gap, axis=1, keepdims=True), 1e-9)
+        return np.asarray(self._near(palm)[:, None] * gap * np.minimum(1.0, TO_LIPS / far))
+
+    def _tip_axis(self) -> Array:
+        """About which what stands upright tips towards the face. (T, 3)."""
+        back = rotations.rotate(self.head, -AHEAD) * [1.0, 0.0, 1.0]
+        return rotations.normalize(rotations.cross(UP[None], back))
+
+    def _near(self, palm: Array) -> Array:
+        """How near palms (T, 3) are to the mouth, 0 to 1. (T,)."""
+        far, close = TIPS
+        away = np.linalg.norm(palm - self._in_head(MOUTH), axis=1) / self.scale
+        share = np.clip((far - away) / (far - close), 0.0, 1.0)
+        return np.asarray(share * share * (3 - 2 * share))
 
     def direction(self, name: Direction, grip: Grip, origin: Array) -> Array:
         """Unit vectors of a direction in the world, of things at an origin (T, 3). (T, 3)."""
@@ -104,23 +136,11 @@ class Hands:
                 found = self._of_hand(name, grip)
             case "jaw" | "crown" | "nose":
                 found = rotations.rotate(self.head, {"jaw": np.array(JAW), "crown": UP, "nose": AHEAD}[name])
-            case "poured":
-                found = self._poured(origin)
             case "inward":
                 found = rotations.rotate(self.head, -LEFT if grip.hand == "left" else LEFT)
             case _:
                 found = self._in_head({"face": EYES, "mouth": MOUTH}[name]) - origin
         return rotations.normalize(found)
-
-    def _poured(self, origin: Array) -> Array:
-        """Up, tipped to the mouth at which something is drunk from: the more, the farther back the head is. (T, 3)."""
-        to_mouth = self._in_head(MOUTH) - origin
-        away = np.linalg.norm(to_mouth, axis=1, keepdims=True)
-        back = np.arcsin(np.clip(rotations.rotate(self.head, AHEAD)[:, 1:2], -1.0, 1.0))
-        near = np.clip((POURED_FROM * self.scale - away) / (POURED_WITHIN * self.scale), 0.0, 1.0)
-        angle = near * np.clip(POURED_LEVEL + POURED_RATIO * back, 0.0, POURED_MOST)
-        level = rotations.normalize(to_mouth * [1.0, 0.0, 1.0])
-        return np.asarray(np.cos(angle) * UP + np.sin(angle) * level)
 
     def _in_head(self, place: tuple[float, float, float]) -> Array:
         return self.head_at + rotations.rotate(self.head, self.scale * np.array(place))

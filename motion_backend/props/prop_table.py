@@ -14,12 +14,11 @@ from scene_graphs.data_tables import read_table, require_known, require_unlike, 
 Vector = tuple[float, float, float]
 Direction = Literal[
     "up", "down", "ahead", "left", "trunk", "across", "fingers", "palm", "thumb",
-    "face", "mouth", "jaw", "crown", "nose", "inward", "poured",
+    "face", "mouth", "jaw", "crown", "nose", "inward",
 ]  # fmt: skip
 """Of the world (up, down), of the chest (ahead, left, and up the trunk), from the right to the left hand (across), of
 the hand, or of both between them (fingers, palm, thumb), from there to the eyes and to the mouth, of the head: up
-(crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward); and up,
-but tipped to the mouth the nearer that is and the farther back the head goes (poured)."""
+(crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward)."""
 
 
 @table
@@ -72,6 +71,18 @@ class Way:
     """Whether its back is at the palm, not its origin."""
     flat: bool = False
     """Whether it lies on its back where it is put down; else it stands."""
+
+
+@table
+class Tipped:
+    """How what is drunk from is tipped at the mouth."""
+
+    deg: float
+    """From upright, wholly at the mouth."""
+    rim_m: float
+    """How high its rim is over its origin, and"""
+    wide_m: float
+    """how far from its middle."""
 
 
 @table
@@ -134,6 +145,7 @@ class Props:
     shapes: dict[str, tuple[PropPart, ...]]
     ways: dict[str, Way]
     called: tuple[Called, ...]
+    tipped: dict[str, Tipped]
     held: tuple[Held, ...]
 
     def __post_init__(self) -> None:
@@ -143,6 +155,7 @@ class Props:
         require_unlike("called", [f"{row.shape} {word}" for row in self.called for word in row.words.split()])
         require_known("held.of", [tool for row in self.held for tool in row.of], self._words)
         require_known("called.shape", [row.shape for row in self.called], self.shapes)
+        require_known("tipped", self.tipped, self.shapes)
         require_known("called.way", [row.way for row in self.called], self.ways)
         require_known("called.instead", [prop for row in self.called for prop in row.instead], held)
         require_known("shapes", self.shapes, held | {row.shape for row in self.called})

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion
+from motion_backend.rendering.hand_deed import from_hanging
 from motion_backend.rendering.motion_figures import Acting, Prop, home_props
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Image, Solid, render
@@ -36,7 +37,9 @@ HEAD, GAP = 22, 6
 """Pixels above a row for its title, and under it."""
 DPI = 100
 QUARTER, SIDE = (0.8, 0.30), (np.pi / 2, 0.0)
-"""Yaw (radians, from where the body faces to its left) and pitch of the two views."""
+"""Yaw (radians, from where the body faces to the side of the hand that does most) and pitch of the two views."""
+ALIKE = 0.02
+"""Metres by which hands differ that do the same."""
 MARGIN = 0.16
 """Metres left free around the poses."""
 AROUND = 1.1
@@ -145,6 +148,12 @@ class _Row:
         return np.arctan2(shown[:, 0], shown[:, 2])
 
     @cached_property
+    def hand(self) -> int:
+        """From which side it is seen, 1 for the left: that of the hand that is away from where it hangs the most."""
+        left, right = from_hanging(self.motion.joint_positions().astype(np.float64)).mean(axis=0).tolist()
+        return 1 if left > right - ALIKE else -1
+
+    @cached_property
     def span(self) -> float:
         """Metres a picture is high: what holds the widest and the highest pose."""
         level = self.joints[..., [0, 2]]
@@ -164,7 +173,7 @@ class _Row:
         return np.concatenate([np.concatenate(row, axis=1) for row in cells])
 
     def _cell(self, column: int, yaw: float, pitch: float) -> Image:
-        (x, z), turned = self.middles[column].tolist(), float(self.yaws[column]) + yaw
+        (x, z), turned = self.middles[column].tolist(), float(self.yaws[column]) + self.hand * yaw
         target = (x, (0.5 - UNDER) * self.span, z)
         level, up = 6.0 * float(np.cos(pitch)), 6.0 * float(np.sin(pitch))
         eye = (x + level * float(np.sin(turned)), target[1] + up, z + level * float(np.cos(turned)))

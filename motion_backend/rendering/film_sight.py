@@ -104,8 +104,8 @@ class Look:
     def rank(self) -> tuple[bool, ...]:
         """What of two views decides before all else: one without the face, or the hand that does what is done, is taken
         only where there is none with it."""
-        half = self.shown >= HALF_HIDDEN
-        return self.enough and self.faced and self.handed, half and self.faced and self.handed, half and self.faced, self.enough
+        half, both = self.shown >= HALF_HIDDEN, self.faced and self.handed
+        return self.enough and both, half and both, half and self.faced, self.enough
 
     @property
     def enough(self) -> bool:

@@ -17,6 +17,7 @@ from motion_backend.body.skinning import SkinnedMesh, skin
 from motion_backend.props import PropTrack, prop_tracks
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid
+from motion_backend.rotations import Array
 from motion_backend.walls import Side
 
 if TYPE_CHECKING:
@@ -127,13 +128,13 @@ class Borne:
     placed: Placed
     walls: tuple[Side, ...]
 
-    def is_behind(self, eye: NDArray[np.floating]) -> bool:
+    def is_behind(self, eye: Array) -> bool:
         """Whether an eye (3,) is beyond one of the walls."""
         return any(not side.faces(eye[[0, 2]]) for side in self.walls)
 
     def is_worked_at(self, points: NDArray[np.floating]) -> bool:
         """Whether any of the points (N, 3) of a body are at it."""
-        here, half = self.placed.to_local(points), np.array(self.placed.size) / 2
+        here, half = self.placed.to_local(points.astype(np.float64)), np.array(self.placed.size) / 2
         away = np.maximum(np.abs(here - [0.0, half[1], 0.0]) - half, 0.0)
         return bool(np.linalg.norm(away, axis=1).min() < WORKED_AT)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from for_each import for_each
 
 from motion_backend.rendering.motion_figures import around, home_props
-from motion_backend.rendering.rasterizer import orbit
+from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.walls import Side
 from scene_graphs.home import home_from_layouts
 from scene_graphs.layout import Layout, Opening, Placed
@@ -73,3 +75,28 @@ def test_the_outside_of_every_wall_is_outside_and_its_room_behind_it() -> None:
         assert not side.crosses(middle + side.outward, np.array([middle + 0.01 * side.outward]))
         assert side.distance(middle + 0.3 * side.outward) == pytest.approx(0.3)
         assert side.distance(side.end + (side.end - side.start)) == pytest.approx(np.hypot(*(side.end - side.start)))
+
+
+WARDROBE = Placed("wardrobe", "wardrobe", (1.2, 0.0, 0.35), (1.2, 2.1, 0.6))
+NIGHTSTAND = Placed("nightstand", "nightstand", (2.2, 0.0, 0.3), (0.5, 0.5, 0.4))
+FURNISHED = home_from_layouts([replace(CORNERED, windows=(), objects=(WARDROBE, NIGHTSTAND))], 0)
+
+
+@for_each(("body", "behind", "stays"), [(1.6, True, False), (1.6, False, True), (0.0, True, True)])
+def test_what_stands_tall_against_a_wall_goes_with_it_whole_unless_the_body_is_at_it(
+    body: float, behind: bool, stays: bool
+) -> None:
+    props = home_props(FURNISHED)
+    (piece,) = (placed for placed in FURNISHED.objects if placed.category == "wardrobe")
+    front = piece.to_world(np.array([0.0, 1.0, piece.size[2] / 2]))
+    sides = [side for wall in FURNISHED.walls if (side := Side.of(wall, FURNISHED)) is not None]
+    wall = next(side for side in sides if side.bears(piece))
+    inward = -np.array([wall.outward[0], 0.0, wall.outward[1]])
+    points = front + (0.06 + body) * inward + np.array([[0.0, y, 0.0] for y in (-0.9, 0.0, 0.6)])
+    eye = points[1] + (-4.5 if behind else 2.0) * inward + [0.0, 0.6, 0.0]
+    camera = Camera(tuple(eye.tolist()), tuple(points[1].tolist()))
+    shown = around(props, camera, points, 0)
+    drawn = [any(one.solid is solid for solid in shown) for one in props if one.name.startswith(piece.id + ":")]
+    low = [any(one.solid is solid for solid in shown) for one in props if "nightstand" in one.name]
+    assert set(drawn) == {stays}, "whole"
+    assert set(low) == {True}, "what is low hides nobody"

@@ -24,7 +24,6 @@ from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.skeleton import build_skeleton
 from motion_backend.walk_generator import Ahead, Frames, Way, follow
 
-
 FLUNG = 1.5
 """Metres a second by which a joint changes its speed from frame to frame that is flung; of a quick stride it is 1.3."""
 
@@ -86,7 +85,9 @@ def test_who_takes_over_from_a_body_that_stands_flings_no_foot() -> None:
     """In whosever gait: at the seam no joint changes its speed more, from frame to frame, than in a quick stride."""
     past = standing_at_the_origin().then(standing_at_the_origin())
     for gait in (1, 3, 8, 40):
-        made = LearnedGait(walking(), gait).begin(past, np.random.default_rng(gait)).window(straight(past, 1.2).ahead(0))
+        made = (
+            LearnedGait(walking(), gait).begin(past, np.random.default_rng(gait)).window(straight(past, 1.2).ahead(0))
+        )
         whole = past.then(made)[len(past) - 2 : len(past) + 3]
         places = build_skeleton().forward_kinematics(whole.root, whole.local)[0].astype(np.float64)
         assert np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max() * 30 < FLUNG, gait

@@ -88,7 +88,7 @@ def test_who_stands_in_for_a_prop_is_of_its_size_or_less() -> None:
         (Skill.LOCO, SIP, "dragon", ["cup"]),
         (Skill.LOCO, SIP, "suitcase", ["cup"]),
         (Skill.TOUCH, "pouring with the right hand", "wine", ["bottle"]),
-        (Skill.TOUCH, "stirring with the right hand", "soup", ["spoon", "bowl"]),
+        (Skill.TOUCH, "stirring with the right hand", "soup", ["spoon", "pot"]),
         (Skill.LOCO, "carrying with both hands", "birthday cake", ["cake"]),
         (Skill.SITDOWN, "reading, book held in both hands", "newspaper", ["newspaper"]),
         (Skill.SITDOWN, "reading, book held in both hands", "book", ["book"]),
@@ -115,8 +115,13 @@ def test_a_named_drink_is_where_the_mug_would_be() -> None:
     (beer,) = prop_tracks(done.motion, named(done, {keyframe: "beer"}))
     assert (mug.prop, beer.prop) == ("cup", "bottle")
     assert mug.start == beer.start
-    np.testing.assert_array_equal(mug.positions, beer.positions)
-    np.testing.assert_array_equal(mug.turns, beer.turns)
+    far = np.linalg.norm(mug.positions - beer.positions, axis=1)
+    assert far[np.linalg.norm(mug.positions - head(done.motion)[mug.start :][: len(far)], axis=1) > 0.5].max() < 1e-9
+    assert far.max() < 0.25, "at the mouth each is tipped in its own way"
+
+
+def head(motion: Motion) -> Array:
+    return Kinematics.of(motion).positions[:, INDEX["head"]]
 
 
 def test_names_that_nobody_knows_change_nothing() -> None:
@@ -212,9 +217,9 @@ def test_a_drink_that_is_carried_to_where_it_is_drunk_is_one_thing_all_the_way()
     for frame in range(0, len(motion), 7):
         assert np.linalg.norm(corners(track, frame) - palm(motion, frame), axis=1).min() < IN_HAND
     (mug,) = prop_tracks(motion, Role(captions=said))
-    assert track.lifts == mug.lifts == (mug.start,)
-    inside = slice(mug.start + 12, mug.stop - 12)
-    np.testing.assert_allclose(track.positions[inside], mug.positions[12:-12], atol=1e-9)
+    assert len(track.lifts) == len(mug.lifts) == 1
+    assert mug.start == middle
+    assert np.linalg.norm(track.positions[mug.start + 12 : mug.stop] - mug.positions[12:], axis=1).max() < 0.25
 
 
 def test_hands_that_hold_something_else_hold_nothing_that_was_carried() -> None:

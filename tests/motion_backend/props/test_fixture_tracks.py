@@ -15,7 +15,7 @@ from motion_backend.body.cast import Role, Worked, worked_from_dict, worked_to_d
 from motion_backend.formats.glb_film import props_glb
 from motion_backend.motion import Does, Motion, Skill
 from motion_backend.props import PropTrack, prop_tracks, works
-from motion_backend.props.fixture_tracks import IN_THE_WAY, MOVES, SLAMS
+from motion_backend.props.fixture_tracks import IN_THE_WAY, MOVES, RECOILS, SLAMS
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 from scene_graphs.furniture import catalogue, typical_size
@@ -171,9 +171,12 @@ def test_a_slam_is_quick_and_ends_as_the_hand_hits():
     there = open_in("cabinet", None, "close", None, captions="slamming with the right hand")
     motion, role, _ = played("cabinet", None, "close", None, captions="slamming with the right hand")
     leaf = next(track for track in prop_tracks(motion, role) if track.prop.endswith("_1"))
-    moving = np.flatnonzero(np.abs(np.diff(leaf.turns[:, 1])) > 1e-6)
-    assert not there[LONG:].any()
+    speed = np.abs(np.diff(leaf.turns[:, 1]))
+    moving = np.flatnonzero(speed > 1e-6)
+    back = round(RECOILS[1] * motion.fps) + 1
+    assert not there[LONG + back :].any(), "it is shut once it has sprung back"
     assert len(moving) <= round(SLAMS * motion.fps) + 1
+    assert (np.diff(speed[moving[:-1]]) > 0).all(), "it flies faster and faster"
 
 
 def test_a_hand_that_never_gets_there_opens_nothing():

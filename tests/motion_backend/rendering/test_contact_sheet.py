@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from small_home import contact, small_home, to
+from upright_body import walking
 
 from motion_backend import rotations
+from motion_backend.body.cast import PLAIN
 from motion_backend.director import Director
 from motion_backend.motion import Character, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
-from motion_backend.rendering.contact_sheet import CELL, GAP, HEAD, UNDER, facts, footprints, sheet
-from motion_backend.skeleton import build_skeleton
+from motion_backend.rendering.contact_sheet import CELL, GAP, HEAD, UNDER, _Row, facts, footprints, sheet
+from motion_backend.skeleton import INDEX, build_skeleton
 
 HOME = small_home()
 TALL = HEAD + 2 * CELL[1] + GAP
@@ -84,3 +86,11 @@ def test_the_title_tells_what_was_not_done() -> None:
 def test_a_page_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="at least one motion"):
         sheet([])
+
+
+def test_a_row_is_seen_from_the_side_of_the_hand_that_does_something() -> None:
+    stands = walking((0.0, 0.0, 0.0), 0.0)
+    for side, sign in (("left", 1), ("right", -1)):
+        turns = stands.local_rotations.copy()
+        turns[:, INDEX[f"{side}_shoulder"]] = [0.0, 0.0, 0.0, 1.0]
+        assert _Row(replace(stands, local_rotations=turns), [], 8, PLAIN).hand == sign

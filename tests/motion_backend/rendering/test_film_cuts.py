@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from acted import SMALL, sat, touched, walked
 from for_each import for_each
+from upright_body import walking
 
 from motion_backend.body.cast import Role
 from motion_backend.motion import Emotion, Motion, PhaseKind, join
@@ -65,6 +66,24 @@ def test_a_hand_that_touches_is_seen_from_near_at_the_moment_it_does():
     phases = [phase for phase in motion.phases if phase.kind is PhaseKind.TOUCH]
     assert INDEX["right_wrist"] in close.hands
     assert any(phase.start < (close.start + close.stop) / 2 < phase.stop for phase in phases)
+
+
+def test_hands_that_somebody_who_stands_lifts_are_a_deed_and_hanging_ones_are_none():
+    stands = walking((0.0, 0.0, 0.0), 0.0)
+    turns = stands.local_rotations.copy()
+    turns[5:55, INDEX["right_shoulder"]] = [0.0, 0.0, 0.0, 1.0]  # held out to the side
+    for motion, hands in ((stands, None), (replace(stands, local_rotations=turns), (INDEX["right_wrist"],))):
+        (cut,) = film_cuts(motion, motion.joint_positions().astype(np.float64), [0])
+        assert (cut.reach and cut.reach.hands) == hands
+        assert cut.reach is None or (cut.whole.gesture and (cut.reach.start, cut.reach.stop) == (5, 55))
+
+
+def test_nobody_upright_is_looked_at_from_near_from_above():
+    joints = story()[0].joint_positions()
+    upright = [shot for shot in close_ups() if joints[shot.start, INDEX["head"], 1] > 1.0]
+    assert upright
+    for shot in upright:
+        assert shot.camera.axes[2][1] > -np.sin(0.31)
 
 
 @for_each("height, hand", [("medium", "left"), ("medium", "right")])
