@@ -103,9 +103,9 @@ TEMPTING: Final = {
     for part, words in {
         "piano": "piano keyboard organ music song melody chord scale key note",
         "dancing": "dance dancer music song record radio twirl spin party",
-        "phone": "phone telephone mobile call caller dial hello voicemail line",
+        "phone": "phone telephone mobile call caller dial hello voicemail line talk speak answer number message",
         "listening to music": "music song radio record headphone headphones album concert playlist",
-        "typing": "type computer laptop keyboard email mail code report essay novel letter message write writer screen pc",
+        "typing": "type computer laptop keyboard email mail code report essay novel letter message write screen",
         "controller": "game controller console joystick round level",
     }.items()
 }

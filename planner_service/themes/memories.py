@@ -15,7 +15,8 @@ RECALLING: Final = frozenset(("when", "how", "that", "where"))
 _USED_TO: Final = re.compile(r"(?:\w+ )?used to \w+|would (?:always|often|sometimes|usually) \w+", re.IGNORECASE)
 """What was done often, and is no more."""
 _YOUNG: Final = re.compile(
-    r"(?:was|were) (?:still |only |very )*(?:small|young|little|a (?:little |small )?(?:child|girl|boy|kid)|\w+ years old)$",
+    r"(?:was|were) (?:still |only |very )*"
+    r"(?:small|young|little|a (?:little |small )?(?:child|girl|boy|kid)|\w+ years old)$",
     re.IGNORECASE,
 )
 """How somebody was when what is told of that time was done: "when I was small | I hid here"."""

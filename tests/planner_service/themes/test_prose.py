@@ -6,7 +6,7 @@ from for_each import for_each
 
 from motion_backend.motion import Character
 from planner_service.evaluation.labels import labelled_themes
-from planner_service.themes.beats import beats_of
+from planner_service.themes.beats import ThemeError, beats_of
 from planner_service.themes.prose import prose_of
 from planner_service.themes.protagonist import cast_by
 
@@ -82,3 +82,29 @@ def test_whom_an_outline_is_about_is_found(theme: str, name: str) -> None:
 def test_what_things_do_and_where_they_lie_is_no_deed_of_the_storys_person(theme: str, told: str) -> None:
     [beat] = [read.beat for read in beats_of(theme) if read.text.endswith(told)]
     assert beat.kind == "other"
+
+
+def test_what_was_done_when_somebody_was_small_is_remembered() -> None:
+    kinds = [
+        read.beat.kind for read in beats_of("When I was small I hid under this table. Now I am old and I sit here.")
+    ]
+    assert kinds[:2] == ["memory", "memory"]
+    assert kinds[-1] == "deed"
+
+
+@for_each(
+    ("theme", "is_refused"),
+    (
+        ("Can you tell me which is cheaper, a queen mattress or a spring one, and do they deliver on Sundays?", True),
+        ("What are your opening hours? Do you take cards?", True),
+        ("Where does she go when nobody watches? She goes to the kitchen and dances.", False),
+        ("What if a burglar fell asleep? He creeps in and tests the sofa.", False),
+    ),
+)
+def test_questions_that_tell_of_nobody_are_refused(theme: str, is_refused: bool) -> None:
+    try:
+        assert beats_of(theme)
+    except ThemeError:
+        assert is_refused
+    else:
+        assert not is_refused
