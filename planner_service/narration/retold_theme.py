@@ -266,7 +266,7 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
         verb = told.tokens[stretch.verb] if stretch.verb is not None else None
         later = {token.told.lower() for token in told.tokens[stretch.end : told.end_of(stretch)]}
         alone = later.isdisjoint({"he", "she", "they", *voice.name.lower().split()[-1:]})  # "slighted, Ida withdrew"
-        if opens and alone and verb is not None and beats[stretch.beat].seen and _is_finite(verb.told):
+        if opens and alone and verb is not None and beats[stretch.beat].seen and _is_finite(verb):
             first = told.tokens[stretch.start]
             first.told = first.told[:1].lower() + first.told[1:]
             first.before, first.is_name = f"{voice['they'] if named else voice.name} ", True
@@ -275,9 +275,10 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
             named = True
 
 
-def _is_finite(verb: str) -> bool:
-    first = verb.split()[0].lower()
-    return first in _TOLD_IN_PAST or (form_of(first) == "past" and not is_adjective(first))
+def _is_finite(verb: Token) -> bool:
+    """Whether a verb is told in the past: "read" of "reads" is, of which the form alone tells nothing."""
+    first = verb.told.split()[0].lower()
+    return first != verb.low or first in _TOLD_IN_PAST or (form_of(first) == "past" and not is_adjective(first))
 
 
 def _capitalise(told: Retelling) -> None:
