@@ -12,9 +12,14 @@ from motion_backend.rotations import Array
 
 if TYPE_CHECKING:
     from scene_graphs.home import Home, Wall
+    from scene_graphs.layout import Placed
 
 SHORT = 0.97
 """Sight lines end this share of the way to a point: a wall that a hand lies on does not hide it."""
+TALL = 1.2
+"""What reaches as high hides who stands behind it (metres)."""
+AGAINST = 0.35
+"""What stands as near to a wall stands against it (metres)."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,12 @@ class Side:
         along = self.end - self.start
         share = float(np.clip((point - self.start) @ along / (along @ along), 0.0, 1.0))
         return float(np.linalg.norm(self.start + share * along - point))
+
+    def bears(self, placed: Placed) -> bool:
+        """Whether a tall piece of furniture stands against it: from behind it is a board, and goes with the wall."""
+        outline = placed.footprint
+        inside = ((outline - self.start) @ self.outward).max() < AGAINST
+        return bool(placed.top > TALL and inside and min(map(self.distance, outline)) < AGAINST)
 
     def faces(self, eye: Array) -> bool:
         """Whether an eye (2,) is on the room's side of the wall."""

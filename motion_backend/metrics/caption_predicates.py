@@ -146,7 +146,8 @@ def kept_share(verdicts: Iterable[Verdict | None]) -> float | None:
 
 
 def shown(motion: Motion, action: Action) -> Motion:
-    """The frames that show a caption: the hold of a pose, the hand at its goal, the way of a walk, all of a rise.
+    """The frames that show a caption: the hold of a pose, the hand at its goal, the way of a walk, all of a rise; of who
+    turns before doing something on the spot, that.
 
     What is picked up or turned on shows once the hand has left, what is put down or slammed before it is there.
     """
@@ -165,6 +166,8 @@ def shown(motion: Motion, action: Action) -> Motion:
             walks = [phase for phase in motion.phases if phase.kind is PhaseKind.WALK]
             ends = round(STARTS * fps)
             start, stop = (walks[0].start + ends, walks[-1].stop - ends) if walks else (0, frames)
+            if walks and action.goal is None and walks[-1].stop < frames:
+                start, stop = walks[-1].stop, frames
         case _:
             start, stop = 0, frames
     start = max(start, 0)

@@ -16,7 +16,7 @@ import numpy as np
 from motion_backend.body.capsules import BODIES, Capsule
 from motion_backend.body.segment_masses import SEGMENTS
 from motion_backend.rotations import Array
-from motion_backend.skeleton import ANKLE_HEIGHT, INDEX, REFERENCE_HEIGHT, Skeleton, build_skeleton
+from motion_backend.skeleton import ANKLE_HEIGHT, HAND_REST, INDEX, REFERENCE_HEIGHT, Skeleton, build_skeleton
 
 MASS: Final = 70.0
 """Kilograms at 1.70 m. Others weigh as their height squared: people of one build do (body mass index)."""
@@ -57,9 +57,15 @@ SOLE: Final = ((0.0, -0.044, 0.041), (0.045, 0.022, 0.088))
 """Centre and half sizes of the box a foot stands on, from heel to ball, in the ankle's frame (metres at 1.70 m)."""
 TOES: Final = ((-0.03, -0.011, 0.045), (0.03, -0.011, 0.045), 0.02)
 """Ends and radius of the bar of toes before the ball, in the toe joint's frame (metres at 1.70 m)."""
-FLESH: Final = 'priority="1" friction="1 .05 .05" solref=".06 1" solimp=".2 .9 .025"'
-"""How all of a body but its feet gives: by a centimetre or two under its weight, as flesh and clothes on a floor do. A
-rigid one strikes and lets go: getting down to a floor and up from it shook twice as much."""
+FLESH: Final = 'priority="1" friction="1 .05 .05" solimp=".2 .9 .025"'
+GIVES: Final = 0.06
+"""How all of a body but its feet gives (seconds): by a centimetre or two under its weight, as flesh and clothes on a
+floor do. A rigid one strikes and lets go: getting down to a floor and up from it shook twice as much."""
+KNEECAP, HEEL_OF_HAND = (0.06, 0.03), (HAND_REST, 0.025)
+"""The balls that a body kneels and leans on, about the joint of a knee and a wrist: radius (metres, a knee's at 1.70 m)
+and how it gives (seconds), less than flesh does. They are as high as plans have knees and wrists over what they bear
+on. Without them a planned knee was 2.5 cm in the air, so that who knelt stood on the toes, and hands, straight where
+plans bend wrists, were 5 to 9 cm in the floor."""
 TOE_SHARE: Final = 0.0025
 """Of the mass; the foot's own segment has toes and all."""
 SOLE_POINTS: Final = np.array([[x, -ANKLE_HEIGHT, z] for z in (-0.033, 0.115) for x in (-0.025, 0.025)])
@@ -146,7 +152,9 @@ class _Body:
         return self.body("pelvis", place, '<freejoint name="root"/>', self.skin("pelvis"), torso + legs)
 
     def arm(self, side: str) -> str:
-        hand = self.body(f"{side}_hand", self.offset(f"{side}_wrist"), "", self.skin(f"{side}_hand"))
+        radius, gives = HEEL_OF_HAND
+        heel = self.ball(f"{side}_hand", radius, gives)
+        hand = self.body(f"{side}_hand", self.offset(f"{side}_wrist"), "", heel)
         elbow = self.joint(f"{side}_elbow", "elbow")
         skin = self.skin(f"{side}_lower_arm")
         lower = self.body(f"{side}_lower_arm", self.offset(f"{side}_elbow"), elbow, skin, hand)
@@ -159,13 +167,9 @@ class _Body:
         foot = self.body(
             f"{side}_foot", self.offset(f"{side}_ankle"), self.joint(f"{side}_ankle", "ankle"), self.sole(side), toe
         )
-        shin = self.body(
-            f"{side}_shin",
-            self.offset(f"{side}_knee"),
-            self.joint(f"{side}_knee", "knee"),
-            self.skin(f"{side}_shin"),
-            foot,
-        )
+        radius, gives = KNEECAP
+        skin = self.skin(f"{side}_shin") + self.ball(f"{side}_knee", radius * self.scale, gives)
+        shin = self.body(f"{side}_shin", self.offset(f"{side}_knee"), self.joint(f"{side}_knee", "knee"), skin, foot)
         thigh = self.skin(f"{side}_thigh")
         return self.body(f"{side}_thigh", self.offset(f"{side}_hip"), self.joint(f"{side}_hip", "hip"), thigh, shin)
 
@@ -203,7 +207,12 @@ class _Body:
         up = self.skeleton.offsets[INDEX[joint]] if joint else np.zeros(3)
         start, end = (np.array(point) * self.scale + up for point in (capsule.start, capsule.end))
         size = f"{capsule.radius * self.scale:.6g}"
-        return f'<geom name="{name}" class="body" type="capsule" fromto="{numbers(start, end)}" size="{size}" {FLESH}/>'
+        form = f'type="capsule" fromto="{numbers(start, end)}" size="{size}"'
+        return f'<geom name="{name}" class="body" {form} {FLESH} solref="{GIVES} 1"/>'
+
+    def ball(self, name: str, radius: float, gives: float) -> str:
+        """About a joint, what a body bears on there."""
+        return f'<geom name="{name}" class="body" type="sphere" size="{radius:.6g}" {FLESH} solref="{gives} 1"/>'
 
     def sole(self, side: str) -> str:
         centre, half = (numbers(np.array(one) * self.scale) for one in SOLE)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import numpy as np
@@ -20,8 +20,11 @@ from motion_backend.rotations import Array
 
 EFFORTS: Final = (Effort(), Effort(24, 2), Effort(28, 2, 2), Effort(30, 2, 2))
 """The usual one, and what is tried after the first, the second and the third fall at a place."""
-FROM_FLOOR: Final = 2
-"""Which of them is begun with where the body gets up from the floor: with less it fell there every time."""
+AT_LEAST: Final = {Doing.RISES: 2, Doing.GOES_DOWN: 1, Doing.LIES: 1}
+"""Which of them is begun with where more than feet touches something: with less the body fell as it got up from the
+floor, and staggered on one knee."""
+UNPREPARED: Final = 6
+"""Rounds in which a horizon is improved that no last one has left controls for."""
 BACK: Final = (1.3, 2.0, 3.0)
 """Seconds that are gone back before each of those."""
 RECOVERED: Final = 1.0
@@ -72,7 +75,7 @@ class Tracker:
         falls, beyond, until, left = 0, 0, frames, ahead
         while (at := len(done.moments) - 1) < until:
             self.between()
-            least = FROM_FLOOR if self.reference.doing[at] == Doing.RISES else 0
+            least = AT_LEAST.get(Doing(self.reference.doing[at]), 0)
             stop = frames if at < frames else until
             self._window(done, EFFORTS[max(falls, least)], data, reader, stop - at)
             at = len(done.moments) - 1
@@ -103,6 +106,8 @@ class Tracker:
         """Plan a horizon and play its first frames."""
         at = len(done.moments) - 1
         controller = Controller(self.models_at(at), data, self.reference, reader)
+        if not len(done.ahead):
+            effort = replace(effort, rounds=UNPREPARED)
         found = controller.improve(done.moments[-1], at, done.ahead, effort)
         played = min(effort.played, left)
         moments, pressures = controller.play(done.moments[-1], at, found.offsets[:played])

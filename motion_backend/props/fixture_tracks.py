@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Literal
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from motion_backend.rotations import Array
 from scene_graphs.layout import Placed
 from scene_graphs.meshes.moving_parts import Kind, Mechanism, Moving, mechanisms
 
-MOVES, SLAMS, SWITCHES = 0.7, 0.2, 0.15
+MOVES, SLAMS, SWITCHES = 0.7, 0.3, 0.15
 """Seconds in which a front opens or shuts, in which it is slammed, and after which a switch has been pressed."""
 AT: Final = 0.03
 """A hand is at a thing while it is no farther from it than this from its nearest (metres)."""
@@ -40,6 +40,7 @@ AGAIN: Final = 3.0
 """Seconds for which one who reaches in leaves it open, to reach in again."""
 SHUT: Final = 1e-3
 """A share that is as good as none."""
+Swing = Literal["opens", "shuts", "slams"]
 _SLAM: Final = re.compile(r"^slamming\b")
 
 
@@ -152,34 +153,40 @@ def _clearance(front: Mechanism, bodies: Array) -> Array:
     return np.asarray(np.linalg.norm(away - np.clip(part, 0.0, 1.0)[..., None] * way, axis=-1).min(axis=1))
 
 
-def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[tuple[bool, int, int]]:
-    """Whether a front is opened or shut, from when on and until when, one after the other."""
+def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[tuple[Swing, int, int]]:
+    """Whether a front is opened, shut or slammed, from when on and until when, one after the other."""
     is_open = deeds[0].worked.does == "close"
     for deed, following in zip(deeds, [*deeds[1:], None], strict=True):
         if deed.worked.does == "close":
             long = round((SLAMS if deed.slams else MOVES) * fps)
             since = max(deed.first - long, 0)
-            yield False, since, max(deed.first, min(since + long, round(MOVES * fps)))
+            way: Swing = "slams" if deed.slams else "shuts"
+            yield way, since, max(deed.first, min(since + long, round(MOVES * fps)))
             is_open = False
             continue
         if not is_open:
-            yield True, deed.first, deed.first
+            yield "opens", deed.first, deed.first
         soon = following is not None and following.first - deed.last < AGAIN * fps
         awaited = following is not None and following.worked.does == "close"
         is_open = is_open or deed.worked.does == "open" or soon or awaited
         if not is_open:
-            yield False, deed.last, deed.last + round(MOVES * fps)
+            yield "shuts", deed.last, deed.last + round(MOVES * fps)
 
 
 def _shares(front: Mechanism, hands: Hands, motion: Motion, deeds: Sequence[_Deed]) -> Array:
     """How far open a front is, 0 to 1. (T,)."""
     shares = np.full(len(motion), float(deeds[0].worked.does == "close"))
-    for opens, since, until in _swings(deeds, motion.fps):
-        if opens:
-            shares[since:] = _opening(front, hands, motion, deeds[0].worked.piece, since)
-        else:
-            left = (until - np.arange(since, len(motion))) / max(until - since, 1)
-            shares[since:] = shares[since] * np.clip(left, 0.0, 1.0)
+    for way, since, until in _swings(deeds, motion.fps):
+        if way == "opens":
+            shares[since:] = _eased(_opening(front, hands, motion, deeds[0].worked.piece, since))
+            continue
+        left = np.clip((until - np.arange(since, len(motion))) / max(until - since, 1), 0.0, 1.0)
+        # What is slammed is fastest as it strikes.
+        shares[since:] = shares[since] * (1.0 - (1.0 - left) ** 2 if way == "slams" else _eased(left))
+    return shares
+
+
+def _eased(shares: Array) -> Array:
     return np.asarray(shares * shares * (3 - 2 * shares))
 
 

@@ -17,6 +17,10 @@ PALM: Final = (0.075, 0.02)
 """From the wrist to the middle of the palm, along the fingers and out of the hand (metres at 1.70 m)."""
 EYES, MOUTH, JAW = (0.0, 0.085, 0.09), (0.0, 0.015, 0.10), (0.0, 0.85, -0.53)
 """In the head's frame: places (metres at 1.70 m), and the way from the chin past the ear."""
+POURED_FROM, POURED_WITHIN = 0.26, 0.10
+"""A palm so near to the mouth begins to tip what is drunk from, and has tipped it so much nearer (metres at 1.70 m):"""
+POURED_LEVEL, POURED_RATIO, POURED_MOST = 0.4, 1.8, 1.0
+"""by this with a level head, and by so much more for every radian that it is back, but no farther (radians)."""
 UP: Final = np.array([0.0, 1.0, 0.0])
 LEFT, AHEAD = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 _SIDES: Final = ("left", "right")
@@ -100,11 +104,23 @@ class Hands:
                 found = self._of_hand(name, grip)
             case "jaw" | "crown" | "nose":
                 found = rotations.rotate(self.head, {"jaw": np.array(JAW), "crown": UP, "nose": AHEAD}[name])
+            case "poured":
+                found = self._poured(origin)
             case "inward":
                 found = rotations.rotate(self.head, -LEFT if grip.hand == "left" else LEFT)
             case _:
                 found = self._in_head({"face": EYES, "mouth": MOUTH}[name]) - origin
         return rotations.normalize(found)
+
+    def _poured(self, origin: Array) -> Array:
+        """Up, tipped to the mouth at which something is drunk from: the more, the farther back the head is. (T, 3)."""
+        to_mouth = self._in_head(MOUTH) - origin
+        away = np.linalg.norm(to_mouth, axis=1, keepdims=True)
+        back = np.arcsin(np.clip(rotations.rotate(self.head, AHEAD)[:, 1:2], -1.0, 1.0))
+        near = np.clip((POURED_FROM * self.scale - away) / (POURED_WITHIN * self.scale), 0.0, 1.0)
+        angle = near * np.clip(POURED_LEVEL + POURED_RATIO * back, 0.0, POURED_MOST)
+        level = rotations.normalize(to_mouth * [1.0, 0.0, 1.0])
+        return np.cos(angle) * UP + np.sin(angle) * level
 
     def _in_head(self, place: tuple[float, float, float]) -> Array:
         return self.head_at + rotations.rotate(self.head, self.scale * np.array(place))

@@ -14,11 +14,12 @@ from scene_graphs.data_tables import read_table, require_known, require_unlike, 
 Vector = tuple[float, float, float]
 Direction = Literal[
     "up", "down", "ahead", "left", "trunk", "across", "fingers", "palm", "thumb",
-    "face", "mouth", "jaw", "crown", "nose", "inward",
+    "face", "mouth", "jaw", "crown", "nose", "inward", "poured",
 ]  # fmt: skip
 """Of the world (up, down), of the chest (ahead, left, and up the trunk), from the right to the left hand (across), of
 the hand, or of both between them (fingers, palm, thumb), from there to the eyes and to the mouth, of the head: up
-(crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward)."""
+(crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward); and up,
+but tipped to the mouth the nearer that is and the farther back the head goes (poured)."""
 
 
 @table
@@ -103,12 +104,19 @@ class Held:
     """A caption that fits this too is left to other rows."""
     anything: bool = False
     """Whether its prop is for want of a name: a thing that is named, and is not held so, is in one hand instead."""
+    of: tuple[str, ...] = ()
+    """Tools, as `called` has them: it is held so where one of these is named, and lies so under it."""
 
     def is_of(self, skill: Skill, caption: str) -> bool:
         """Whether a caption says so."""
         text = caption.lower()
         left = bool(self.unless and re.search(self.unless, text))
         return skill in self.skills and not left and re.search(self.words, text) is not None
+
+    @property
+    def lies_under(self) -> bool:
+        """Whether what a tool is used on is seen with it: food under a knife, cloth under a needle."""
+        return len(self.props) > 1 or any(grip.still for grip in self.props)
 
     @property
     def hands(self) -> tuple[int, ...]:
@@ -127,14 +135,20 @@ class Props:
     held: tuple[Held, ...]
 
     def __post_init__(self) -> None:
-        require_unlike("held.words", [f"{row.words} {row.skills}" for row in self.held])
+        require_unlike("held.words", [f"{row.words} {row.skills} {row.of}" for row in self.held])
         require_known("held.props", [grip.prop for row in self.held for grip in row.props], self.shapes)
         held = {grip.prop for row in self.held for grip in row.props}
         require_unlike("called", [f"{row.shape} {word}" for row in self.called for word in row.words.split()])
+        require_known("held.of", [tool for row in self.held for tool in row.of], self._words)
         require_known("called.shape", [row.shape for row in self.called], self.shapes)
         require_known("called.way", [row.way for row in self.called], self.ways)
         require_known("called.instead", [prop for row in self.called for prop in row.instead], held)
         require_known("shapes", self.shapes, held | {row.shape for row in self.called})
+
+    @property
+    def _words(self) -> frozenset[str]:
+        """All nouns by which something is called."""
+        return frozenset(word for row in self.called for word in row.words.split())
 
 
 @cache
@@ -149,7 +163,8 @@ def held_in(skill: Skill, caption: str, thing: str = "") -> Held | None:
     """What a caption has in the hands, by the first row that knows its words, with what a thing is called by in the
     place of its own prop where that may be; None for nothing."""
     look = caption.rpartition(";")[2]  # before it stands what is done; see planner_service/scripts/caption_actions.py
-    row = next((row for row in prop_table().held if row.is_of(skill, look)), None)
+    rows = (row for row in prop_table().held if not row.of or not {*row.of}.isdisjoint(_calls(thing)))
+    row = next((row for row in rows if row.is_of(skill, look)), None)
     if row is None or not (named := shown_as(thing, row)) or any(grip.prop == named.shape for grip in row.props):
         return row
     # Of two props that it might be, it is the first.
@@ -173,8 +188,14 @@ def things_named() -> Mapping[str, tuple[Called, ...]]:
 def shown_as(thing: str, *captions: Held | None) -> Called | None:
     """How a thing of that name is seen: as what most captions hold for it, of several shapes that it is called; None
     of what has no shape. A thing is called by its last word, or its last two: "red cups", "watering can"."""
-    words, known = thing.lower().split()[-2:], things_named()
-    called = ("-".join(words), "".join(words[-1:]), "".join(words[-1:]).removesuffix("s"))
-    rows = next((known[word] for word in called if word in known), ())
+    known = things_named()
+    rows = next((known[word] for word in _calls(thing) if word in known), ())
     holding = [grip for row in captions if row is not None for grip in row.props]
     return max(rows, key=lambda row: sum(map(row.is_held_for, holding)), default=None)
+
+
+def _calls(thing: str) -> tuple[str, str, str]:
+    """The nouns that a thing of that name may be called by, the best first."""
+    words = thing.lower().split()[-2:]
+    last = "".join(words[-1:])
+    return "-".join(words), last, last.removesuffix("s")

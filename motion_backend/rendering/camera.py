@@ -44,6 +44,8 @@ NEAR_HAND, IN_IT, ABOVE_HAND = 0.25, 0.08, 0.08
 above it: what a hand lies on or in does not stand before it."""
 FLAT = 0.35
 """The cosine between a front and a look at it up to which it is the better seen, the straighter it is looked at."""
+BESIDE = np.radians(80.0)
+"""How far round from straight before a front one sees it yet, and the profile of who stands at it."""
 FRONT = 2.0
 """What it counts to see that well the front of what is touched."""
 
@@ -151,6 +153,12 @@ class Front:
         way = np.asarray(camera.eye) - self.place
         return float(np.clip(way @ self.outward / np.linalg.norm(way) / FLAT, -1.0, 1.0))
 
+    @property
+    def beside(self) -> tuple[float, float]:
+        """Yaws from which it and the face of who stands at it are seen."""
+        before = float(np.arctan2(self.outward[0], self.outward[2]))
+        return before - BESIDE, before + BESIDE
+
 
 @dataclass(frozen=True)
 class Sight:
@@ -164,21 +172,31 @@ class Sight:
     near: Boxes
     """and its parts."""
     sides: tuple[Side, ...]
-    """Walls."""
+    """Walls,"""
+    against: tuple[tuple[Side, ...], ...]
+    """and those that each piece stands tall against."""
 
     @staticmethod
     def at(home: Home, place: tuple[float, float], reach: float) -> Sight:
         """Around a place [x, z], with the furniture within reach (metres)."""
         near = tuple(o for o in home.objects if np.hypot(o.position[0] - place[0], o.position[2] - place[1]) < reach)
         sides = tuple(side for wall in home.walls if (side := Side.of(wall, home)) is not None)
-        return Sight(home, home.room_at(place), near, Boxes.of(near), sides)
+        against = tuple(tuple(side for side in sides if side.bears(placed)) for placed in near)
+        return Sight(home, home.room_at(place), near, Boxes.of(near), sides, against)
 
     def score(self, camera: Camera, poses: Array) -> float:
         """How well a camera shows poses (P, 22, 3), whichever side of them it sees."""
         eye = np.asarray(camera.eye)
-        seen = 1.0 - float(self.near.hide(eye, poses[:, [*SEEN, *HANDS]].reshape(-1, 3)).mean())
+        seen = 1.0 - self.hidden(camera, poses[:, [*SEEN, *HANDS]].reshape(-1, 3))
         score = HIDDEN * seen + INDOORS * self.indoors(camera) - BLOCKED * self.blocked(camera)
         return score - AT_WINDOW * self._at_a_window(eye)
+
+    def hidden(self, camera: Camera, points: Array) -> float:
+        """The share of points (N, 3) that furniture hides from a camera: what stands tall against a wall that the
+        camera looks through is left away with it."""
+        eye = np.asarray(camera.eye)
+        gone = [any(not side.faces(eye[[0, 2]]) for side in walls) for walls in self.against]
+        return float(self.near.but(np.flatnonzero(gone)).hide(eye, points).mean())
 
     def shows(self, camera: Camera, corners: Array, side: Side) -> float:
         """How much of an opening a camera sees: the share of its corners (N, 3) that no furniture hides, counted by
@@ -187,7 +205,7 @@ class Sight:
         if not side.faces(eye[[0, 2]]):
             return 0.0
         across = float(camera.axes[2][[0, 2]] @ side.outward)
-        free = 1.0 - float(self.near.hide(eye, corners).mean())
+        free = 1.0 - self.hidden(camera, corners)
         return free * float(np.sqrt(np.clip(abs(across), 0.0, 1.0)))
 
     def front(self, hand: Array) -> Front | None:
@@ -204,8 +222,7 @@ class Sight:
 
     def blocked(self, camera: Camera) -> bool:
         """Whether the eye is within furniture, or right before some."""
-        eye = np.asarray(camera.eye)
-        return bool(self.near.hide(eye, eye[None] + CLOSE * camera.axes[2:]).any())
+        return self.hidden(camera, np.asarray(camera.eye) + CLOSE * camera.axes[2:]) > 0
 
     def indoors(self, camera: Camera) -> bool:
         """Whether the eye is in the room of the place."""
@@ -226,16 +243,16 @@ def _side_of(placed: Placed, hand: Array) -> tuple[float, Array]:
     return np.inf if out.max() < -IN_IT else float(np.linalg.norm(np.maximum(out, 0.0))), outward
 
 
-def liking(motion: Motion, shot: Shot) -> Array:
-    """How much each yaw shows of the body: three-quarter views of a face, long sides of who lies or walks. (16,)."""
+def liking(motion: Motion, shot: Shot, yaws: Array = YAWS) -> Array:
+    """How much each yaw shows of the body: three-quarter views of a face, long sides of who lies or walks. (N,)."""
     turn = motion.local_rotations[shot.frame, 0].astype(np.float64)
     ahead, up = rotations.rotate(turn, np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]))
     if abs(up[1]) < 0.5:
         along = np.arctan2(up[0], up[2])
-        return np.asarray(np.abs(np.sin(YAWS - along)) * 0.6)
+        return np.asarray(np.abs(np.sin(yaws - along)) * 0.6)
     facing = np.arctan2(ahead[0], ahead[2])
     best = 1.2 if shot.ghosts else 0.8
-    return np.asarray(np.cos(np.abs(rotations.wrap(YAWS - facing)) - best) * 0.6)
+    return np.asarray(np.cos(np.abs(rotations.wrap(yaws - facing)) - best) * 0.6)
 
 
 def visible_share(objects: Sequence[Placed], eye: tuple[float, float, float], points: Array) -> float:
@@ -254,17 +271,26 @@ class Boxes:
     """Where the pieces stand. (B, 3)."""
     turn: Array
     """Their frames: a vector v of the home is turn @ v. (B, 3, 3)."""
+    piece: NDArray[np.integer]
+    """The number of the piece of each. (B,)."""
 
     @staticmethod
     def of(objects: Sequence[Placed]) -> Boxes:
         """All parts of some pieces."""
-        parts = [(placed, part) for placed in objects for part in parts_of(placed)]
+        numbered = [(number, part) for number, placed in enumerate(objects) for part in parts_of(placed)]
+        parts = [(objects[number], part) for number, part in numbered]
         cos, sin = (np.array([wave(placed.yaw) for placed, _ in parts]) for wave in (np.cos, np.sin))
         turn = np.zeros((len(parts), 3, 3))
         turn[:, 0, 0], turn[:, 0, 2], turn[:, 2, 0], turn[:, 2, 2], turn[:, 1, 1] = cos, -sin, sin, cos, 1.0
         low = np.array([part.low for _, part in parts]).reshape(-1, 1, 3)
         high = np.array([part.high for _, part in parts]).reshape(-1, 1, 3)
-        return Boxes(low, high, np.array([placed.position for placed, _ in parts]).reshape(-1, 3), turn)
+        origin = np.array([placed.position for placed, _ in parts]).reshape(-1, 3)
+        return Boxes(low, high, origin, turn, np.array([number for number, _ in numbered], dtype=np.int64))
+
+    def but(self, pieces: NDArray[np.integer]) -> Boxes:
+        """The same without those of some pieces."""
+        left = ~np.isin(self.piece, pieces)
+        return Boxes(self.low[left], self.high[left], self.origin[left], self.turn[left], self.piece[left])
 
     def hide(self, eye: Array, points: Array) -> NDArray[np.bool_]:
         """Which points (N, 3) lie behind any of them, seen from an eye. (N,)."""

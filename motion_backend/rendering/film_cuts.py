@@ -16,6 +16,7 @@ from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Emotion, Motion, PhaseKind
 from motion_backend.props import PropTrack
+from motion_backend.props.prop_frames import runs_of
 from motion_backend.rendering.film_edit import FilmEdit, Frames
 from motion_backend.rendering.hand_deed import HANDS, Blow, from_hanging
 from motion_backend.rotations import Array
@@ -37,6 +38,10 @@ HELD: Final = 0.5
 """The same of a hand that touches."""
 HELD_SECONDS: Final = 1.0
 """For which something is in a hand that must be seen."""
+LIFTED: Final = 0.28
+"""Metres from where a hand would hang from which on it is lifted, by who does not walk: a gesture."""
+ALSO: Final = 0.75
+"""The share of the one hand's way from which the other is lifted as well."""
 IN_HAND: Final = 0.25
 """Metres from the middle of a thing to a wrist that has a part in holding it."""
 TO_HEAD: Final = 0.30
@@ -69,6 +74,8 @@ class Framing:
     """The wrists that have a part in it."""
     deed: Frames | None = None
     """Frames in which these hands are what it is about; of a look from near all are."""
+    gesture: bool = False
+    """Whether these hands neither touch nor hold anything."""
 
 
 @dataclass(frozen=True)
@@ -86,7 +93,8 @@ class Cut:
         """All of it, with the hands that must be seen."""
         if self.reach is None:
             return Framing(self.start, self.stop)
-        return Framing(self.start, self.stop, hands=self.reach.hands, deed=(self.reach.start, self.reach.stop))
+        deed = (self.reach.start, self.reach.stop)
+        return Framing(self.start, self.stop, hands=self.reach.hands, deed=deed, gesture=self.reach.gesture)
 
 
 def film_cuts(
@@ -170,8 +178,23 @@ class _Finder:
         return bool((np.abs(up) < LYING).mean() > 0.2)
 
     def deed(self, start: int, stop: int) -> Framing | None:
-        """The frames in which something is touched, else those in which it is in hand, and the hands that do so."""
-        return self.reach(start, stop) or next(self._holding(start, stop, HELD_SECONDS), None)
+        """The frames in which something is touched, else those in which it is in hand, else those of a gesture, and
+        the hands that do so."""
+        held = next(self._holding(start, stop, HELD_SECONDS), None)
+        return self.reach(start, stop) or held or self._gesture(start, stop)
+
+    def _gesture(self, start: int, stop: int) -> Framing | None:
+        """The frames in which hands of who does not walk are lifted for the longest, and which."""
+        away = from_hanging(self.joints[start:stop])
+        walks = [p for p in self.motion.phases if p.kind is PhaseKind.WALK]
+        stands = [not any(p.start <= frame < p.stop for p in walks) for frame in range(start, stop)]
+        runs = runs_of((away.max(axis=1) > LIFTED) & stands)
+        first, last = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
+        if last - first < HELD_SECONDS * self.motion.fps:
+            return None
+        far = away[first:last].mean(axis=0)
+        hands = tuple(np.asarray(HANDS)[far > ALSO * far.max()].tolist())
+        return Framing(start + first, start + last, Subject.HANDS, hands, gesture=True)
 
     def reach(self, start: int, stop: int) -> Framing | None:
         """The frames in which something is touched, or in which a hand is drawn and hits it, and with which hands."""
@@ -218,6 +241,9 @@ class _Finder:
         moved = [np.ptp(self.joints[at : at + long, _HEAD], axis=0).max() for at in range(start, stop - long + 1, 5)]
         middle = start + 5 * int(np.argmin(moved)) + long // 2
         hands = tuple(np.asarray(HANDS)[busy].tolist())
+        gesture = self._gesture(start, stop)
+        if gesture is not None and not hands:
+            hands = gesture.hands  # a face whose hands say something is seen with them
         return self._around(start, stop, middle, Subject.FACE, hands, STILL)
 
     def _holding(self, start: int, stop: int, seconds: float) -> Iterator[Framing]:

@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
 PITCHES: Final = (0.16, 0.34)
 """From above, in radians: near the eyes of who stands, and over low furniture."""
-CLOSE_PITCHES: Final = (0.06, 0.30, 0.60, 0.95)
-"""The same from near: who lies is looked at from higher up."""
+CLOSE_PITCHES: Final = (0.06, 0.30), (0.06, 0.30, 0.60, 0.95)
+"""The same from near, of who is upright, whose crown nobody wants to see, and of who lies."""
 NEAREST: Final = 2.3
 """Metres from the middle of what is seen."""
 CLOSEST: Final = {Subject.FACE: 1.25, Subject.HANDS: 1.2}
@@ -169,7 +169,7 @@ class _Director:
     def close_up(self, close: Framing, before: FilmShot) -> FilmShot | None:
         """The same from near; None where something hides it from all cameras, or is in the way of all, and of who
         looks out of a window, which would not be seen."""
-        views = [] if self._outlook(close.start, close.stop) is not None else self._near(close, before)
+        views = [] if self._outlook(close) is not None else self._near(close, before)
         if not views:
             return None
         shot, enough = self._best(close, views)
@@ -180,7 +180,7 @@ class _Director:
         that shows most; and whether it is enough."""
         start, stop = framing.start, framing.stop
         bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
-        if self._outlook(start, stop) is not None:
+        if self._outlook(framing) is not None:
             bodies = replace(bodies, face=None)
         found = [self._looked(framing, bodies, view) for view in views[:TRIES]]
         best = max(found, key=lambda one: one.worth)
@@ -212,7 +212,7 @@ class _Director:
         poses = self.joints[frames]
         shown: list[tuple[Entrance | Outlook | None, float]] = [
             (Entrance.of(self.set.home, self.motion) if start == 0 else None, AT_DOOR),
-            (self._outlook(start, stop), TO_WINDOW),
+            (self._outlook(framing), TO_WINDOW),
         ]
         openings = [(one, worth) for one, worth in shown if one is not None]
         points = np.concatenate([self._reached(start, stop), *(one.corners for one, _ in openings)])
@@ -220,11 +220,12 @@ class _Director:
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         front = self._front(framing, sight)
-        widest = BEYOND if front is not None else PROFILE if framing.deed else QUARTER
-        liked = liking(self.motion, Shot(int(frames[len(frames) // 2])))
+        widest = BEYOND if front is not None else PROFILE if framing.deed and not framing.gesture else QUARTER
+        yaws = _yaws(front)
+        liked = liking(self.motion, Shot(int(frames[len(frames) // 2])), yaws)
         scored = []
         for pitch in PITCHES:
-            for index, yaw in enumerate(YAWS.tolist()):
+            for index, yaw in enumerate(yaws.tolist()):
                 camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
                 score = float(liked[index]) + sight.score(camera, poses)
                 score -= FAR * _distance(camera)
@@ -233,7 +234,7 @@ class _Director:
                 if front is not None:
                     score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
-                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), self._doing(framing)).mean())
+                    score -= HAND_HIDDEN * sight.hidden(camera, self._doing(framing))
                 score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
                 scored.append(_View(score - self._broken(camera, before, start), camera, points))
         return _sorted(_frontal(scored, front))
@@ -263,9 +264,12 @@ class _Director:
         touched = any(p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop for p in self.motion.phases)
         return sight.front(self.joints[stop - 1, framing.hands[0]]) if framing.hands and touched else None
 
-    def _outlook(self, start: int, stop: int) -> Outlook | None:
-        """The window that the body looks out of in some frames."""
-        return Outlook.of(self.set.home, self.motion, self.joints[start:stop], self.turns[start:stop])
+    def _outlook(self, framing: Framing) -> Outlook | None:
+        """The window that the body looks out of; none where it makes gestures, which are seen from before."""
+        cut = slice(framing.start, framing.stop)
+        if framing.gesture:
+            return None
+        return Outlook.of(self.set.home, self.motion, self.joints[cut], self.turns[cut])
 
     def _near(self, close: Framing, before: FilmShot) -> list[_View]:
         """Cameras near a face, a quarter turned, or beside an arm that touches, with whose head and
@@ -282,10 +286,10 @@ class _Director:
         sight = self.set.sight(_middle(points))
         front = self._front(close, sight)
         upright = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
-        steep = STEEP[0 if upright else 1]
+        pitches, steep = CLOSE_PITCHES[0 if upright else 1], STEEP[0 if upright else 1]
         scored = []
-        for pitch in CLOSE_PITCHES:
-            for yaw in YAWS.tolist():
+        for pitch in pitches:
+            for yaw in _yaws(front).tolist():
                 camera = _fitted(yaw, pitch, points, self.aspect, CLOSEST[close.subject])
                 if sight.blocked(camera) or _distance(camera) > NO_LONGER_NEAR:
                     continue
@@ -296,7 +300,7 @@ class _Director:
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score += TO_FRONT * front.seen(camera) if front is not None else 0.0
-                    score -= HAND_HIDDEN * float(sight.near.hide(np.asarray(camera.eye), hands).mean())
+                    score -= HAND_HIDDEN * sight.hidden(camera, hands)
                     score -= ALONG * max(abs(float(arm @ towards)) for arm in _directions(poses, close.hands))
                 scored.append(_View(score - self._broken(camera, before, close.start), camera))
         return _sorted(scored)
@@ -340,9 +344,14 @@ class _View(NamedTuple):
 class _Looked(NamedTuple):
     """A view, how good its picture is, and what it sees of the home."""
 
-    worth: tuple[tuple[bool, bool, bool], float]
+    worth: tuple[tuple[bool, ...], float]
     view: _View
     scene: Sequence[Solid]
+
+
+def _yaws(front: Front | None) -> Array:
+    """From where one may look, beside what is touched too. (N,)."""
+    return YAWS if front is None else np.append(YAWS, front.beside)
 
 
 def _sampled(start: int, stop: int) -> NDArray[np.int64]:

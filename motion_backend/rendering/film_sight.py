@@ -40,7 +40,9 @@ ENOUGH: Final = 0.96
 """The share of looks in which it is."""
 HALF_HIDDEN: Final = 0.6
 """The same, if that is the price for a face."""
-FACED: Final = {Subject.BODY: 0.12, Subject.FACE: 0.30, Subject.HANDS: 0.12}
+HANDED: Final = 0.5
+"""How much of the hands that do something is to be seen, as a share of what is seen of them with nothing before."""
+FACED: Final = {Subject.BODY: 0.20, Subject.FACE: 0.30, Subject.HANDS: 0.20}
 """How much of a face is to be seen, as a share of what is seen of it from the front: a profile is 0.4."""
 FRONT: Final = 0.40
 """How far forward the skin of a face looks, at least: the cosine."""
@@ -95,11 +97,15 @@ class Look:
     """How much of them is seen, in what surroundings: counts as the scores of `camera` do."""
     faced: bool = True
     """Whether the face is seen where it must be."""
+    handed: bool = True
+    """Whether the hands are seen that do something."""
 
     @property
-    def rank(self) -> tuple[bool, bool, bool]:
-        """What of two views decides before all else: one without the face is taken only where there is none with it."""
-        return self.enough and self.faced, self.faced and self.shown >= HALF_HIDDEN, self.enough
+    def rank(self) -> tuple[bool, ...]:
+        """What of two views decides before all else: one without the face, or the hand that does what is done, is taken
+        only where there is none with it."""
+        half = self.shown >= HALF_HIDDEN
+        return self.enough and self.faced and self.handed, half and self.faced and self.handed, half and self.faced, self.enough
 
     @property
     def enough(self) -> bool:
@@ -202,12 +208,14 @@ class _Picture:
         appeal = float(shares.mean(axis=0) @ (body, part)) + held * self._held_share()
         appeal -= FOREGROUND * self._foreground() + CLUTTER * self._clutter()
         appeal -= VOID * float((~self.inside).mean()) + VEILED * self._veiled()
-        appeal += TO_DEED * self._deed_share()
+        deed = self._deed_share()
+        handed = deed is None or deed >= HANDED
+        appeal += TO_DEED * (deed or 0.0)
         face = self._face_share()
         if face is None:
-            return Look(shown, appeal)
+            return Look(shown, appeal, handed=handed)
         enough = BESIDE_DEED if bodies.doing is not None and bodies.doing.any() else ENOUGH_FACE
-        return Look(shown, appeal + TO_FACE * min(face / enough, 1.0), face >= FACED[bodies.subject])
+        return Look(shown, appeal + TO_FACE * min(face / enough, 1.0), face >= FACED[bodies.subject], handed)
 
     @cached_property
     def shares(self) -> Array:
@@ -260,12 +268,12 @@ class _Picture:
             found.append(float((weights * np.clip(cosine, 0.0, 1.0)) @ seen / weights.sum()) / STRAIGHT)
         return float(np.mean(found))
 
-    def _deed_share(self) -> float:
-        """How much of the hands that do what is done is seen, with the body and all else that may be before them; 0
+    def _deed_share(self) -> float | None:
+        """How much of the hands that do what is done is seen, with the body and all else that may be before them; None
         where none does anything."""
         bodies = self.bodies
         if bodies.hand is None or bodies.doing is None or not bodies.hand.any() or not bodies.doing.any():
-            return 0.0
+            return None
         found = []
         for frame in _some(bodies.doing):
             own = bodies.vertices[frame][bodies.hand].astype(np.float64)

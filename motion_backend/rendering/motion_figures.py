@@ -22,11 +22,14 @@ from motion_backend.walls import Side
 if TYPE_CHECKING:
     from motion_backend.motion import Motion
     from scene_graphs.home import Home
+    from scene_graphs.layout import Placed
 
 ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "ceiling")
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
 
+WORKED_AT = 0.12
+"""What a body is as near to is part of what it does (metres)."""
 REACH = 4.5
 """What is farther from the body, or from what a camera looks at, is of no picture of it (metres)."""
 
@@ -118,6 +121,24 @@ def body_solids(motion: Motion, frames: Sequence[int], opacity: float = 1.0, rol
 
 
 @dataclass(frozen=True)
+class Borne:
+    """A piece of furniture that stands tall against walls."""
+
+    placed: Placed
+    walls: tuple[Side, ...]
+
+    def is_behind(self, eye: NDArray[np.floating]) -> bool:
+        """Whether an eye (3,) is beyond one of the walls."""
+        return any(not side.faces(eye[[0, 2]]) for side in self.walls)
+
+    def is_worked_at(self, points: NDArray[np.floating]) -> bool:
+        """Whether any of the points (N, 3) of a body are at it."""
+        here, half = self.placed.to_local(points), np.array(self.placed.size) / 2
+        away = np.maximum(np.abs(here - [0.0, half[1], 0.0]) - half, 0.0)
+        return bool(np.linalg.norm(away, axis=1).min() < WORKED_AT)
+
+
+@dataclass(frozen=True)
 class Prop:
     """One mesh of a home, ready to draw."""
 
@@ -132,12 +153,16 @@ class Prop:
     """The wall it is part of."""
     stump: Solid | None = None
     """What is left of a wall where it would stand in the way."""
+    borne: Borne | None = None
+    """What it is part of, if that stands tall against a wall."""
 
     def stands_before(self, camera: Camera, points: NDArray[np.floating], room: int | None) -> bool:
         """Whether a camera leaves it away to see points (N, 3) in a room, as a doll's house is open in front."""
         eye = np.asarray(camera.eye)
         if self.side is not None and self.side.crosses(eye[[0, 2]], points[:, [0, 2]]):
             return True
+        if self.borne is not None and self.borne.is_behind(eye):
+            return not self.borne.is_worked_at(points)
         if self.room == room:
             return self.side is not None and not self.side.faces(eye[[0, 2]])
         nearer = (np.asarray(camera.target) - (self.low + self.high) / 2) @ camera.axes[2]
@@ -154,6 +179,8 @@ def home_props(home: Home) -> list[Prop]:
         for mesh in stump_meshes(home)
     }
     sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
+    against = ((placed, tuple(side for side in sides if side.bears(placed))) for placed in home.objects)
+    borne = {placed.id: Borne(placed, walls) for placed, walls in against if walls}
     props = []
     for mesh in home_meshes(home):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
@@ -163,9 +190,9 @@ def home_props(home: Home) -> list[Prop]:
         opacity = 0.25 if mesh.color[3] < 1 else 1.0
         casts = not mesh.name.startswith(SHADOWLESS)
         solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=opacity, casts=casts)
-        props.append(
-            Prop(mesh.name, solid, low, high, side.room if side else home.room_at(middle), side, stumps.get(mesh.name))
-        )
+        room = side.room if side else home.room_at(middle)
+        piece = borne.get(mesh.name.partition(":")[0])
+        props.append(Prop(mesh.name, solid, low, high, room, side, stumps.get(mesh.name), piece))
     return props
 
 
@@ -177,7 +204,7 @@ def around(
     reach: float = REACH,
 ) -> list[Solid]:
     """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room:
-    of a wall the foot is left."""
+    of a wall the foot is left, and what stands tall against it goes with it, unless the body is at that."""
     target = np.asarray(camera.target)
     shown = []
     for prop in props:

@@ -27,8 +27,10 @@ class BodyTrack:
         """The same, to be gone on with in another way."""
         return replace(self, keyframes=list(self.keyframes), whereabouts=deepcopy(self.whereabouts))
 
-    def put(self, index: int | None, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None) -> None:
-        """One more keyframe, of a beat's or of none."""
+    def put(
+        self, index: int | None, skill: Skill, mood: Emotion, caption: str, piece: str, room: str | None, held: str = ""
+    ) -> None:
+        """One more keyframe, of a beat's or of none, with a tool in the hand."""
         self.keyframes.append(
             PlannedKeyframe.model_validate(
                 {
@@ -38,6 +40,7 @@ class BodyTrack:
                     "furniture": piece,
                     "beat": index,
                     "room": room,
+                    "held": held,
                 }
             )
         )

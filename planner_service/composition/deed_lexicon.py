@@ -128,6 +128,8 @@ class DeedRow:
     """Of a gesture: whether it is a way of walking, and not done on the spot."""
     alone: bool = False
     """Of a gesture: whether it is only done where nothing else is done meanwhile: not "sweeps, singing"."""
+    holds: str = ""
+    """The tool in the hand for it, where the clause names none."""
 
 
 @table
@@ -274,7 +276,7 @@ def _at_rest(row: DeedRow, named: Sequence[str]) -> Deed | None:
 def _touched(clause: Clause, about: str, row: DeedRow, named: list[str]) -> Deed | None:
     """What hands do: where something is put, at what is named, where the thing is, else where it usually is done."""
     goals = [piece for place in _GOAL.findall(clause.text) for piece in pieces_in(place)]
-    named = sorted(named, key=lambda piece: "," not in clause.text and piece not in goals)
+    named = goals if row.there else sorted(named, key=lambda piece: "," not in clause.text and piece not in goals)
     fitting = [piece for piece in named if affords(piece, "touch")]
     if (_UNDER_IT if named else _GROUND).search(clause.text):
         row = replace(row, captions=_LOW)

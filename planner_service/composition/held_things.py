@@ -69,9 +69,15 @@ class _Hands:
     """What was named last, which "it" may be."""
 
     def name(self, number: int, clause: Clause, nth: int) -> None:
-        """Note what a keyframe's clause has in the hands in it: where it is done at several places, there the `nth`."""
+        """Note what a keyframe's clause has in the hands in it: the tool that it is done with, else what it is done to,
+        at several places the `nth` there."""
         keyframe = self.keyframes[number]
         told = things_in(clause, keyframe) or [self.last] * bool(_MEANT & set(clause.lemmas[1:3]))
+        tool = next((one for one in [*told, keyframe.held] if is_tool(one, keyframe)), "")
+        if tool:  # "it" is what it was done to
+            self.named.setdefault(number, tool)
+            self.last = next((one for one in told if one != tool), "") or mentioned(clause) or self.last
+            return
         thing = told[min(nth, len(told) - 1)] if told else ""
         self.last = thing or mentioned(clause) or self.last
         if not thing:
@@ -142,6 +148,12 @@ class _Hands:
         return (number - 1,) if leads and _are_free(self.keyframes[number - 1], thing, False) else ()
 
 
+def is_tool(thing: str, keyframe: PlannedKeyframe) -> bool:
+    """Whether a thing is a tool whose work a keyframe's caption shows, where it is in the hand."""
+    row = held_in(keyframe.skill, keyframe.caption, thing)
+    return row is not None and bool(row.of)
+
+
 def is_handled(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> bool:
     """Whether a hand is seen taking the thing that a clause says is taken, or putting it down."""
     taken = clause.verb in theme_words()["taking_verbs"] | _LAID and clause.lemmas[1:2] != ("on",)
@@ -176,7 +188,7 @@ def _by_right(number: int, keyframes: Sequence[PlannedKeyframe]) -> PlannedKeyfr
 
 
 def with_things(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) -> tuple[PlannedKeyframe, ...]:
-    """Keyframes with what is in the hands by the words of their beats."""
+    """Keyframes with what is in the hands by the words of their beats, and else the tools that they had already."""
     hands = _Hands(list(keyframes))
     told: set[int] = set()
     for number, keyframe in enumerate(keyframes):

@@ -454,7 +454,8 @@ class KeyframeWriter:
             self.body.show(index)
             return
         stood, self._opening = self._opening, opening_of(Skill.LOCO, read.text)
-        same = last is not None and last.skill is Skill.LOCO and (last.caption, last.furniture) == (caption, piece)
+        done = (Skill.LOCO, caption, piece, deed.row.holds)
+        same = last is not None and (last.skill, last.caption, last.furniture, last.held) == done
         if same and (stood is self._opening or self._opening is None):  # who stood still looks out of the window then
             others = [one for one in captions if one != caption]
             if not others:
@@ -470,7 +471,7 @@ class KeyframeWriter:
             if elsewhere if piece == "floor" else not (touched or self.body.is_there(piece, read.room)):
                 self.body.put(index, Skill.LOCO, mood, usual(Skill.LOCO, mood), piece, read.room)
             piece = "floor"
-        self.body.put(index, Skill.LOCO, mood, caption, piece, read.room)
+        self.body.put(index, Skill.LOCO, mood, caption, piece, read.room, deed.row.holds)
         self.body.resting = None
         if deed.named and piece != "floor":
             self.body.whereabouts.brought(read.clause, (read.room, piece))
@@ -544,7 +545,8 @@ class KeyframeWriter:
             return False
         caption = self._one_of(captions, mood, index, skill)
         last = self.keyframes[-1] if self.keyframes else None
-        if last is not None and (last.skill, last.furniture, last.caption) == (skill, piece, caption):
+        done = (skill, caption, piece, deed.row.holds)
+        if last is not None and (last.skill, last.caption, last.furniture, last.held) == done:
             others = [one for one in captions if one != caption]
             if not others:
                 self.body.show(index)
@@ -554,7 +556,7 @@ class KeyframeWriter:
         for here in self.keyframes[-1:]:  # where one is nobody walks to
             same = here.furniture == piece and (piece != "floor" or self.body.resting is not None)
             room = here.room if same and None in (room, here.room) else room
-        self.body.put(index, skill, mood, caption, piece, room)
+        self.body.put(index, skill, mood, caption, piece, room, deed.row.holds)
         self._lay(read, skill)
         return True
 

@@ -103,13 +103,15 @@ def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     """What hands do it to, and with what, of things that are kept somewhere: a hand that is laid there has none of
     them but what its keyframe names, and what is carried is else a box."""
     done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor] or list(keyframes)
-    bare = bool(done) and all(_BARE.search(one.caption) for one in done)
+    rows = [held_in(one.skill, one.caption, one.held) for one in done]
+    worked = any(row is not None and row.of and row.lies_under for row in rows)
+    tooled = any(row is not None and row.of for row in rows)
+    bare = bool(done) and not worked and (tooled or all(_BARE.search(one.caption) for one in done))
     if clause.verb in theme_words()["sought_verbs"] or clause.quotes:
         return []
     told = [one for one in _OBJECT.finditer(clause.text.partition(" ")[2]) if bare or one["with"]]
-    held = [held_in(one.skill, one.caption) for one in done]
     seen = {lemma_of(word) for one in done for word in _words(one.caption)}
-    seen |= {grip.prop for one in held if one is not None for grip in one.props}
+    seen |= {grip.prop for row in rows if row is not None for grip in row.props}
     named = _held_words(keyframes)
     told = [one for one in told if lemma_of(_words(one["what"])[-1]) not in (named if bare else named | seen)]
     found = [(one["with"] or "") + one["what"] for one in told if _is_carried(one["what"])]

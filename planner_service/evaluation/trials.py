@@ -66,6 +66,7 @@ _WITH_ARMRESTS: Final = frozenset({"armchair", "multi_seat_sofa", "loveseat_sofa
 
 _SAT_ON: Final = frozenset({"seat", "sofa"})
 _HUNG: Final = frozenset({"pendant_lamp", "ceiling_lamp", "wall_lamp"})
+_KNOCKED_ON: Final = frozenset({"table", "side", "closet", "shelf", "appliance"})
 _ON_TOPS: Final = ON_TOPS | {"wash"}
 
 
@@ -200,9 +201,14 @@ def _serves(caption: str, need: str, placed: Placed, spot: Spot, home: Home) -> 
 
 
 def _handled(caption: str, placed: Placed, spot: Spot) -> bool:
-    """Whether what hands do in a caption is done at such a piece: nobody washes a chair or turns a ceiling lamp."""
-    doing = handling_of(caption)
-    if doing and (furniture.class_of(placed.category) in _SAT_ON or placed.category in _HUNG):
+    """Whether what hands do in a caption is done at such a piece: nobody washes a chair, turns a ceiling lamp, stirs on a
+    mattress or knocks on a screen."""
+    doing, kind = handling_of(caption), furniture.class_of(placed.category)
+    if doing and (kind in _SAT_ON or placed.category in _HUNG):
+        return False
+    if doing not in ("", "pick", "put") and kind == "bed":
+        return False
+    if doing == "knock" and (kind not in _KNOCKED_ON or spot.height == "low"):
         return False
     return is_top(spot.normal) if doing in _ON_TOPS else True
 

@@ -19,7 +19,8 @@ import numpy as np
 from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill, moment
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.sit.sit_skill import seat_for
-from motion_backend.procedural.touch.hand_contacts import suits
+from motion_backend.procedural.touch.hand_captions import handling_of
+from motion_backend.procedural.touch.hand_contacts import suits, to_knock_on
 from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
@@ -222,7 +223,8 @@ class _Stage:
             hand, spot = hand_of(keyframe.caption, default=free), self._spot(index, keyframe, mood, place)
             opening = self._opening(index, place) if keyframe.skill is Skill.TOUCH else None
             if opening is not None:
-                spot = opening.spot(height_of(keyframe.caption), self.scale)
+                knocked = handling_of(keyframe.caption) == "knock"
+                spot = opening.spot(height_of(keyframe.caption), self.scale, knocked)
             elif keyframe.skill is Skill.TOUCH and (kind := self._asked(index)) is not None:
                 action = replace(action, lacks=LACKS[kind])
             if keyframe.skill is Skill.TOUCH:
@@ -315,6 +317,8 @@ class _Stage:
         """One of the spots of a piece of the wanted height, with room for arms, on which nothing lies."""
         wanted = height_of(caption)
         found = [s for s in found if self._elbows.within_arms_way(s)] or found
+        if handling_of(caption) == "knock":
+            found = to_knock_on(found, self._elbows.solid, self.scale)
         level = [[s for s in found if s.height == height] for height in (wanted, "medium", "low")]
         suited = ([s for s in some if suits(s, caption, self._elbows.solid)] for some in level)
         found = next(filter(None, suited), level[0] or level[1] or found)

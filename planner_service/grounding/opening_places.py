@@ -12,6 +12,7 @@ from typing import Final
 
 import numpy as np
 
+from motion_backend.procedural.touch.hand_contacts import KNOCKED
 from motion_backend.walls import Side
 from planner_service.themes.opening_words import Kind
 from scene_graphs.affordances.affordances import Spot
@@ -62,13 +63,14 @@ class OpeningPlace:
         """Yaw of who has come in by it."""
         return wrap(self.facing + np.pi)
 
-    def spot(self, height: str, scale: float) -> Spot:
-        """Where a hand goes: on a door to its handle, on a window to a height (low, medium or high) of a body of
-        `scale` times 1.70 m."""
+    def spot(self, height: str, scale: float, knocked: bool = False) -> Spot:
+        """Where a hand goes: on a door to its handle, or over it where it is `knocked` on, on a window to a height (low,
+        medium or high) of a body of `scale` times 1.70 m."""
         low, high = self.opening.bottom + _EDGE, self.opening.top - _EDGE
-        y = HANDLE_HEIGHT if self.kind == "door" else float(np.clip(_HAND[height] * scale, low, max(low, high)))
+        y = float(np.clip((KNOCKED if knocked else _HAND[height]) * scale, low, max(low, high)))
+        y = HANDLE_HEIGHT if self.kind == "door" and not knocked else y
         inward = (-float(np.sin(self.facing)), 0.0, -float(np.cos(self.facing)))
-        proud = _HANDLE if self.kind == "door" else 0.0
+        proud = _HANDLE if self.kind == "door" and not knocked else 0.0
         point = (self.middle[0] + proud * inward[0], y, self.middle[1] + proud * inward[2])
         at = "medium" if self.kind == "door" else height
         return Spot("touch", self.kind, point, inward, self.facing, self.standing, self.facing, height=at)

@@ -20,8 +20,6 @@ _LEAST: Final = 0.4
 """Share of a beat's words that stand together in the theme where it is told."""
 _NEAR: Final = 6
 """Words between the two places where a beat's words stand, less one."""
-SHORT: Final = re.compile(r"([a-z]+)'(m|re|s|ve|ll)")
-"""A word that is written together with a helper after it."""
 SUBJECTS: Final = frozenset(("he", "she", "it", "they", "i", "we", "you", "who", "which", "that", "there"))
 
 
@@ -181,10 +179,8 @@ def sentence_ends(theme: str, tokens: Sequence[Token]) -> list[int]:
 def runs_of(tokens: Sequence[Token], words: Sequence[str]) -> Iterator[range]:
     """Where words stand one after the other, are not quoted, and are still told."""
     places = [at for at, token in enumerate(tokens) if token.is_word]
-    alone = len(words) == 1
     for number in range(len(places) - len(words) + 1 if words else 0):
         run = places[number : number + len(words)]
         low = [tokens[at].low for at in run]
-        low = [short[1] if alone and (short := SHORT.fullmatch(word)) else word for word in low]
         if low == list(words) and all(tokens[at].told and not tokens[at].quoted for at in run):
             yield range(run[0], run[-1] + 1)

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import Final
 
 from planner_service.narration.beat_stretches import (
-    SHORT,
     SUBJECTS,
     Retelling,
     Stretch,
@@ -26,9 +26,10 @@ from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.scripts.script import Beat
 from planner_service.themes.beats import EXPRESSIONS
-from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, lemma_of, past
+from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, kinds_of, lemma_of, past
+from planner_service.themes.prose import prose_of
 from planner_service.themes.protagonist import called, head_of, hero_of
-from planner_service.themes.sentence_parser import clauses_of_text
+from planner_service.themes.sentence_parser import Clause, clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_plural
@@ -51,7 +52,6 @@ _THIRD: Final = {
 }
 _OWNS: Final = re.compile(r"\s+(?!(?:and|to|in|on|at|with|from|for|by|as|of|the|a|an|his|that)\b)\w")
 """What follows "her" where it owns that."""
-_ENDINGS: Final = {"m": "am", "re": "are", "s": "is", "ve": "have", "ll": "will"}
 _BASE_AFTER: Final = frozenset(("can", "will", "may", "must", "could", "would", "might", "should", "shall", "to", "not",
                                 "did", "does", "do", "let", "lets", "cannot"))  # fmt: skip
 """Words before a verb that has no tense."""
@@ -61,24 +61,27 @@ _AMBIGUOUS: Final = frozenset(("can", "will", "may", "must", "do", "have", "bein
 _SINGULAR: Final = frozenset(("he", "she", "it", "who"))
 _PLURAL: Final = frozenset(("i", "we", "you", "they"))
 """Who does things in verbs' base forms."""
-_IT_IS: Final = re.compile(r"(“[^”]*”|\"[^\"]*\")|\b([Ii]t|[Hh]e|[Ss]he|[Tt]here|[Tt]hat)['’]s\b(?! been| \w+ed\b)")
-"""What is said, else a contraction that has a past: "it's"."""
+_ASKS: Final = grammar().auxiliaries | {"what", "which", "how", "where", "why", "who", "when"}
+"""Words that questions begin with."""
+_TAKEN: Final = frozenset(("it", "him", "her", "them", "the", "a", "an", "his", "their", "himself", "herself"))
+"""Words that what ends in -s before them does something to: "finds it", "a power cut catches him"."""
 _TORN: Final = ("it", "them", "up", "open", "off", "the", "apart", "down", "out", "a", "one", "another", "each")
 _TENSELESS: Final = ("ing", "participle")
 
 
 def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     """A theme in the past, told of a voice's person."""
-    theme = _IT_IS.sub(lambda one: one[1] or f"{one[2]} is", re.sub(r"(?<!\.)\.\.(?!\.)", ".", theme))
+    theme = re.sub(r"(?<!\.)\.\.(?!\.)", ".", prose_of(theme))
     clauses = clauses_of_text(theme)
     ordered = clauses[:1] and not clauses[0].subject and clauses[0].text.split()[0].lower() == clauses[0].verb
     hero = hero_of(clauses) or ("you" if ordered else "")  # "Hide under the table, then crawl out"
     own = called(clauses, hero) or hero.lower()
     told = Retelling(tokens_of_theme(theme))
-    told.stretches = located(told.tokens, beats)
+    told.stretches = [_with_verb(one, beats, clauses) for one in located(told.tokens, beats)]
     told.ends = sentence_ends(theme, told.tokens)
     several = own in _PLURAL or (own not in _SINGULAR and is_plural(head_of(hero).lower()))  # "two friends dance, sing"
-    together = {one.text.split()[0].lower() for one in clauses if " and " in one.subject}  # "Emma and Luca | quarrel"
+    together = {one.text.split()[0].lower() for one in clauses if _are_several(one.doer)}  # "Emma and Luca | quarrel"
+    _leave_questions(told)
     _put_in_past(told, plain=several, all_of_it=_is_present(told), together=together)
     if ordered:
         _say_who(voice, told, beats)
@@ -89,12 +92,45 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     return told
 
 
+def _are_several(doer: str) -> bool:
+    return doer.lower() in _PLURAL or " and " in doer or is_plural(head_of(doer).lower())
+
+
+def _with_verb(stretch: Stretch, beats: Sequence[Beat], clauses: Sequence[Clause]) -> Stretch:
+    """A stretch without a verb where the words of its beat have none: "cups in the sink"."""
+    text = beats[stretch.beat].text
+    told = [one.verb for one in clauses if text == one.text or text.endswith(f" {one.text}")]
+    does = " " not in text and text.lower() in bases(text.lower()) and not (text.lower() in things() or is_known(text))
+    return replace(stretch, verb=None) if told and not (any(told) or does) else stretch
+
+
+def _leave_questions(told: Retelling) -> None:
+    """Questions that are asked of nobody in the story stay as they are: "What if somebody practised?"."""
+    for start, end in zip(told.starts, told.ends, strict=True):
+        colon = next((at for at in range(end, start, -1) if told.tokens[at].text in ":;"), start)
+        tokens = told.tokens[colon : end + 1]
+        first = next((token.low for token in tokens if token.is_word), "")
+        if (
+            first in _ASKS
+            and any(one.text == "?" for one in tokens[-2:])
+            and {"he", "she"}.isdisjoint(one.low for one in tokens)
+        ):
+            for token in tokens:
+                token.quoted = True
+
+
 def _is_present(told: Retelling) -> bool:
-    """Whether more of the beats' verbs are in the present than in the past."""
+    """Whether more of the beats' verbs are in the present than in the past, or somebody does something in it."""
+    words = [token for token in told.tokens if token.is_word]
+    heads = [told.tokens[one.verb] for one in told.stretches if one.verb is not None]
+    now = any(
+        before.low in _SINGULAR - {"who", "it"} and (form_of(one.low) == "present" or one.low in ("is", "has", "does"))
+        for before, one in pairwise(words) if one in heads and not one.quoted
+    )  # fmt: skip
     verbs = [told.tokens[one.verb].low for one in told.stretches if one.verb is not None]
     after = sum(verb in _TOLD_IN_PAST or form_of(verb) == "past" for verb in verbs)
     tenseless = sum(form_of(verb) in _TENSELESS for verb in verbs)
-    return 2 * after <= len(verbs) - tenseless
+    return now or 2 * after <= len(verbs) - tenseless
 
 
 def _put_in_past(told: Retelling, plain: bool, all_of_it: bool, together: Collection[str]) -> None:
@@ -158,12 +194,9 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     stands there."""
     earlier, before, marked, follows = near
     before = before.lstrip(",") if marked == word else ","
-    if before in _BASE_AFTER and word not in ("is", "are"):
+    asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
+    if (before in _BASE_AFTER and word not in ("is", "are")) or (asked and marked == word and word in bases(word)):
         return None
-    if short := SHORT.fullmatch(word):
-        has = short[2] == "s" and form_of(follows) in ("participle", "past") and not is_adjective(follows)
-        known = short[1] in SUBJECTS or (short[2] == "s" and short[1] in ("what", "where", "here", "how"))
-        return f"{short[1]} {_helper('has' if has else _ENDINGS[short[2]], short[1])}" if known else None
     if word in story_words().helpers and word not in _TOLD_IN_PAST:
         after = before in SUBJECTS or (head and word in ("have", "do") and before)
         return _helper(word, before) if after or word not in _AMBIGUOUS | {"don't"} else None
@@ -172,18 +205,14 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     acts = before in _PLURAL or (head and (is_plural(before) or follows in grammar().marks))
     form, how = form_of(word), is_adjective(word) and not acts
     base = word in bases(word) and not (how or _is_noun(word, before))
-    asked = earlier in story_words().helpers and not near[1].startswith(",")  # "did she fall"
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
         tears = word == "tears" and follows in _TORN  # no tears of somebody who weeps
-        finite = before in SUBJECTS or ((head or joined) and not _is_noun(word, before))
+        led = before in grammar().marks | grammar().prepositions or is_adjective(before)
+        sure = not led and (follows in _TAKEN or (not is_noun(word) and "VERB" in kinds_of(word)))
+        finite = before in SUBJECTS or sure or ((head or joined) and not _is_noun(word, before))
         return in_past(word) if finite or tears else None
-    if (
-        form is None
-        and base
-        and not (asked and marked == word)
-        and (before in _PLURAL or (head and (plain or before in _SINGULAR or is_plural(before))))
-    ):
+    if form is None and base and (before in _PLURAL or (head and (plain or before in _SINGULAR or is_plural(before)))):
         return past(word)
     return None
 
@@ -216,18 +245,15 @@ def _tell_of(voice: Voice, tokens: Sequence[Token], hero: str, own: str) -> None
     blanks = {**mine, **(_THIRD.get(own, {}) if own != voice.pronouns else {})}
     words = [(at, token) for at, token in enumerate(tokens) if token.is_word and not token.quoted]
     for at, token in words:
-        word, space, rest = token.told.partition(" ")  # "I was" of "I'm"
-        if blank := blanks.get(word.lower()):
-            owns = word.lower() != "her" or _OWNS.match("".join(one.text for one in tokens[at + 1 : at + 3]))
+        if blank := blanks.get(token.told.lower()):
+            owns = token.low != "her" or _OWNS.match("".join(one.text for one in tokens[at + 1 : at + 3]))
             first = blank == "their" and mine and not any(one.is_name for _, one in words)
             own = f"{voice.name}'s" if first else voice[blank if owns else "them"]  # "My father used to sing here"
-            token.told, token.is_name = own + space + rest, True
+            token.told, token.is_name = own, True
     _name(voice, tokens, hero)
     for (_, before), (_, token) in pairwise(words):
-        if before.told.lower() == "they" and token.told == "was":
-            token.told = "were"
-    for _, token in words:
-        token.told = re.sub(r"^([Tt]hey) was$", r"\1 were", token.told)
+        if token.told in ("was", "were") and (before.told.lower() == "they" or before.told == voice.name):
+            token.told = voice.was(before.told if before.told == voice.name else "they")
 
 
 def _name(voice: Voice, tokens: Sequence[Token], hero: str) -> None:
@@ -250,11 +276,10 @@ def _name(voice: Voice, tokens: Sequence[Token], hero: str) -> None:
 
 
 def _call(tokens: Sequence[Token], place: range, name: str) -> None:
-    """Some tokens told as a name, and what was told of a contraction: "he was" of "I'm"."""
-    rest = tokens[place.start].told.partition(" ")[2]
+    """Some tokens told as a name."""
     for at in place:
         tokens[at].told, tokens[at].is_name = "", True
-    tokens[place.start].told = f"{name} {rest}".rstrip()
+    tokens[place.start].told = name
 
 
 def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
@@ -262,7 +287,7 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
     named = voice.name.lower() in told.text.lower()
     for stretch in told.stretches:
         start = max(one for one in told.starts if one <= stretch.start)
-        opens = not any(token.is_word for token in told.tokens[start : stretch.start])
+        opens = not any(token.is_word or token.quoted for token in told.tokens[start : stretch.start + 1][:-1])
         verb = told.tokens[stretch.verb] if stretch.verb is not None else None
         later = {token.told.lower() for token in told.tokens[stretch.end : told.end_of(stretch)]}
         alone = later.isdisjoint({"he", "she", "they", *voice.name.lower().split()[-1:]})  # "slighted, Ida withdrew"

@@ -171,11 +171,8 @@ def _alike(one: Keyframe, other: Keyframe) -> bool:
     beats = [getattr(keyframe, "beat", None) for keyframe in (one, other)]
     if one.skill is Skill.LOCO and beats[0] != beats[1]:
         return False
-    return place_of(one) == place_of(other) and (one.skill, one.emotion, one.caption) == (
-        other.skill,
-        other.emotion,
-        other.caption,
-    )
+    same = all(getattr(one, name) == getattr(other, name) for name in ("skill", "emotion", "caption", "held"))
+    return same and place_of(one) == place_of(other)
 
 
 def _told(keyframe: Keyframe) -> str:

@@ -184,7 +184,7 @@ def hero_of(clauses: Sequence[Clause]) -> str:
         return "I"
     if mains and mains[0].lower() == "you":
         return "you"
-    people = [clause for clause in told if is_person(clause.subject)]
+    people = [clause for clause in told if is_person(clause.subject) and not _are_things(clause, told)]
     people = [one for one in people if not (pronoun and one is not told[0] and one.subject.lower() in _SOMEBODY)]
     done = (one for one in clauses if not (one.aside or one.joint == "to" or (one.denied and not one.unable)))
     deeds = Counter(one.doer for one in done)
@@ -213,6 +213,16 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     # Whom no list knows does most: "Rex, soft as butter, comes home, kneels to tickle the puppy".
     busy = [who for who, times in deeds.most_common() if times > 1 and who.istitle() and _may_live(who)]
     return next(iter([*living, *(one.subject for one in people), *(who for who in busy if " " not in who)]), "")
+
+
+def _are_things(clause: Clause, told: Sequence[Clause]) -> bool:
+    """Whether "they" are things, which alone were told of before: "The keys are gone. | They | were here"."""
+    before = [one.subject for one in told if (one.sentence, one.place) < (clause.sentence, clause.place)]
+    return (
+        clause.subject.lower() == "they"
+        and any(lemma_of(head_of(one)) in things() and _is_plural(one) for one in before)
+        and not any(is_person(one) and one.lower() != "they" for one in before)
+    )
 
 
 def _without_visitors(people: Sequence[Clause], deeds: Counter[str]) -> list[Clause]:

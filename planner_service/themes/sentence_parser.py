@@ -10,7 +10,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
-from itertools import groupby
+from itertools import groupby, takewhile
 from typing import Any, Final
 
 from planner_service.themes.asides import (
@@ -23,9 +23,10 @@ from planner_service.themes.asides import (
     without_relative,
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
+from planner_service.themes.prose import prose_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
-from planner_service.themes.verb_finder import FLOATING, NAMING, Token, has_verb, verb_place
+from planner_service.themes.verb_finder import FLOATING, NAMING, Token, has_verb, names, verb_place
 from planner_service.themes.verb_group import NEARLY, verb_group
 
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
@@ -36,8 +37,6 @@ _SUPPOSING: Final = frozenset(("if", "unless"))
 
 _TITLE: Final = re.compile(r"\b(Mme|Mlle|Sgt|Capt|Col|Lt|Fr|Sr|St)\.(?= [A-Z])")
 """Titles whose full stop ends no sentence."""
-_LOUD: Final = re.compile(r"\b[A-Z]{4,}\b")
-"""Names as screenplays write them."""
 _IDLE: Final = frozenset(
     ("do", "be", "have", "lose", "waste", "take", "make", "pay", "give", "get", "leave", "find", "see", "hear")
 )
@@ -124,7 +123,7 @@ class Clause:
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
     quotes: list[str] = []
-    text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
+    text = prose_of(text)
     text = _SO.sub(lambda one: f"{one[0]} that" if is_adjective(one[1].lower()) else one[0], text)
     text = _BESIDE.sub(r"\1 ", text)
     text = _MEANWHILE.sub(lambda one: f"{one[1]} " if verb_of(one[2]) not in ("", one[2]) else one[0], text)
@@ -244,6 +243,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         return [Clause(piece.text, "", "", _lemmas(tokens), piece.joint, quotes=told, sentence=sentence)]
     place -= 2 * ([token.low for token in tokens[max(place - 2, 0) : place]] == ["no", "longer"])
     subject = _subject([token for token in tokens[:place] if not token.text.startswith("«")])
+    subject = subject or (_who_there_is(tokens[place:]) if piece.tokens[0].low == "there" else "")
     if not subject and tokens[0].text.startswith("«"):
         subject = _inverted(tokens[place + 1 :])
         tokens = [*tokens[: place + 1], *tokens[place + 1 + len(subject.split()) :]]
@@ -274,6 +274,15 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         if not set(denials).issuperset(some) and some[-1].low != "and"  # "my roommate and | I"
     ]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
+
+
+def _who_there_is(words: Sequence[Token]) -> str:
+    """Somebody of whom it is told that there they are: "There is | a retired nurse"."""
+    ends = grammar().prepositions | RELATIVES | {","}
+    noun = list(takewhile(lambda token: token.low not in ends, words[1:])) if words[0].low in grammar().be else []
+    called = [token for token in noun[:1] if token.text[:1].isupper() and not kinds_of(token.low)]
+    is_somebody = noun and (called or noun[-1].low in theme_words()["people"] or noun[0].low in names())
+    return " ".join(token.text for token in noun) if is_somebody else ""
 
 
 def _is_theirs(tokens: Sequence[Token], place: int) -> bool:
@@ -418,7 +427,8 @@ def _subject(tokens: Sequence[Token]) -> str:
     """Who does it, of the words before the verb: those after the last comma-like stretch of time or place."""
     parts = [list(part) for is_mark, part in groupby(tokens, lambda token: token.text == ",") if not is_mark]
     last = next((at for at in reversed(range(len(parts))) if _may_act(parts[at])), 0)  # "the baker, up since two, …"
-    named = next((at for at, part in enumerate(parts) if len(part) == 1 and _is_called([part[0].text])), last)
+    alone = (at for at, part in enumerate(parts) if len(part) == 1 and _may_act(part) and _is_called([part[0].text]))
+    named = next(alone, last)
     if named < last and parts[last][0].low in ARTICLES:  # "Mira, the tidy one, …"
         return parts[named][0].text
     words = [token.text for token in (parts[last] if parts else ())]
@@ -447,8 +457,8 @@ def _subject(tokens: Sequence[Token]) -> str:
 def _may_act(words: Sequence[Token]) -> bool:
     """Whether words between commas may be who does it."""
     known, first = grammar(), next((word for word in words if word.low not in grammar().adverbs), words[0])
-    if len(words) == 1 and first.low in known.marks:
-        return False  # "No, …"
+    if (len(words) == 1 and first.low in known.marks) or theme_words()["wheres"].issuperset(one.low for one in words):
+        return False  # "No, …", "Upstairs, …"
     return first.low in known.subjects or (
         first.low not in known.prepositions
         and (first.low in known.marks or (first.text[:1].isupper() and not is_adjective(first.low)))

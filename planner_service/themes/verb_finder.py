@@ -40,6 +40,8 @@ NAMING: Final = frozenset(("named", "called", "nicknamed"))
 """What stands between a noun and the name of whom it means."""
 _ONE_OF: Final = frozenset(("a", "an", "one", "some", "this"))
 _ARTICLES: Final = frozenset(("the", "a", "an"))
+_WHERE: Final = frozenset(("in", "on", "under", "by", "beside", "behind", "near"))
+"""Words after which it is told where things are."""
 _OBJECTS: Final = frozenset(("him", "them", "me", "himself", "herself", "back", "home", "and"))
 
 
@@ -70,12 +72,7 @@ def plain(text: str) -> str:
     text = _CONTRACTION.sub(lambda m: known.contractions.get(m[1].lower(), f"{m[1]} not"), text)
     for otherwise, plainly in known.rewrites:
         text = re.sub(rf"(?i)\b{otherwise}\b", plainly, text)
-    text = _INVERTED.sub(_turned, text)
-    text = re.sub(r"(?i)\b(I|he|she|they|we)'d((?: (?:never|always|often|rather|not))* (\w+))", _would, text)
-    text = re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s been\b", r"\1 has been", text)
-    return re.sub(
-        r"\b(I|[Hh]e|[Ss]he|[Tt]hey|[Ww]e)'d\b", r"\1 had", re.sub(r"\b([Hh]e|[Ss]he|[Ii]t)'s\b", r"\1 is", text)
-    )
+    return _INVERTED.sub(_turned, text)
 
 
 def _turned(found: re.Match[str]) -> str:
@@ -88,13 +85,6 @@ def _turned(found: re.Match[str]) -> str:
     before = found.string[: found.start()].rsplit(".", 1)[-1]
     told = found[1] or ("," if verb_place(tokens_of(before)) is not None else "")
     return f"{told} {found[3]} {found[2]}"
-
-
-def _would(found: re.Match[str]) -> str:
-    """What "'d" stands for by the form of the verb after it: "she'd go" would, "she'd gone" had."""
-    base = verb_of(found[3])
-    would = base == found[3].lower() != participle(base) or found[3].lower() == "like"
-    return f"{found[1]} {'would' if would else 'had'}{found[2]}"
 
 
 def verb_place(tokens: Sequence[Token]) -> int | None:
@@ -178,6 +168,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
             return False  # "Boxes everywhere.", "kettle on, shoes off"
         return _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
     before = tokens[at].low
+    if not at and is_noun(word) and _counts(before):
+        return False  # "Thirty-one essays on the table", "Wet footprints from the bath"
     if before.startswith("«") and word != base:
         return True
     if before in grammar().subjects or before in grammar().modals or before in ("do", "does", "did"):
@@ -195,6 +187,11 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         led = before in grammar().with_gerund or tokens[0].low == "instead"
         return led or (before not in grammar().prepositions and not is_noun(word))
     return before not in grammar().prepositions and _follows(tokens, at, place, base)
+
+
+def _counts(word: str) -> bool:
+    """Whether a word tells how many or what of the noun behind it: "thirty-one", "12", "wet", nobody's name."""
+    return word.isdigit() or word.split("-")[0] in grammar().numbers or (is_adjective(word) and word not in names())
 
 
 def calls(tokens: Sequence[Token], place: int) -> bool:
@@ -234,13 +231,13 @@ def _opens(word: str, base: str, after: str) -> bool:
     sure = is_third_person(word) or participle(base) != past(base) == word  # "fell", "woke"
     if is_adjective(word) and not (sure or after in grammar().marks | grammar().prepositions | _PARTICLES):
         return False
+    lies_there = lemma_of(word) in things().keys() - theme_words()["body"] - {"switch"}
+    if lies_there and is_noun(word) and after in (_WHERE if word != base else grammar().prepositions):
+        return False  # "Bag on the bed.", "cups in the sink"
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
         return not names or is_adjective(after)
-    lies_there = (
-        word in things() and word not in theme_words()["body"] and after in grammar().prepositions
-    )  # "Bag on the bed."
-    return not is_noun(word) or (_goes_on(after) and bool(after) and not lies_there)
+    return not is_noun(word) or (_goes_on(after) and bool(after))
 
 
 def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
@@ -250,8 +247,12 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     if is_adjective(before) and not is_noun(before) and is_noun(word) and not (before == "other" and at == 1):
         return False  # but "the other wipes the table"
     small = grammar().marks | grammar().prepositions
-    named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[1 : at + 1]))
-    if tokens[0].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word) and not named:
+    if is_noun(word) and _finite_follows(tokens, place):
+        return False  # "with stiff fingers | takes the case", "a power cut | catches him"
+    start = next((of + 1 for of in range(at, -1, -1) if tokens[of].text == ","), 0)
+    start += tokens[start].low in grammar().adverbs
+    named = any(one.low in _ARTICLES and last.low not in small for last, one in pairwise(tokens[start + 1 : at + 1]))
+    if tokens[start].low in grammar().prepositions and tokens[at].text[:1].islower() and is_noun(word) and not named:
         return False  # "under the sofa cushions", but "as quiet as a cat the burglar climbs in"
     feels = is_adjective(tokens[0].low) and len(tokens) > 1 and tokens[1].low in grammar().prepositions
     if feels and tokens[at].text[:1].islower() and is_noun(word) and not named:
@@ -267,6 +268,13 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
     rests = after.endswith("ing") and before in theme_words()["people"]  # "the father stands swaying"
     plain = not (is_noun(word) and word.endswith("s")) or rests
     return plain or _goes_on(after) or is_adjective(after) or is_noun(after)
+
+
+def _finite_follows(tokens: Sequence[Token], place: int) -> bool:
+    """Whether the word after one there is the verb of what they name, since it goes on with an object."""
+    after, then = ([token.low for token in tokens[place + 1 : place + 3]] + ["", ""])[:2]
+    led = then in grammar().marks - {"to"} | _OBJECTS - {"back", "home", "and"} | {"it", "her"}
+    return is_third_person(after) and led
 
 
 def two_people(tokens: Sequence[Token], joint: int) -> bool:

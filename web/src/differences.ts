@@ -76,7 +76,7 @@ function ofMoment({ one, other, same }: Pair, left: Story, right: Story): Differ
   if (same) return [];
   const [mine, theirs] = [left.keyframes[one ?? -1], right.keyframes[other ?? -1]];
   const numbers = [...new Set([one, other])].flatMap((index) => (index === null ? [] : [index + 1]));
-  const number = `Moment ${numbers.join(" and ")}`;
+  const number = `Moment ${numbers.join(" → ")}`;
   if (!mine || !theirs) return [[number, told(mine), told(theirs)]];
   return FIELDS.filter(([, read]) => read(mine) !== read(theirs)).map(([what, read]) => [`${number}, ${what}`, read(mine), read(theirs)]);
 }

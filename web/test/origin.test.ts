@@ -16,6 +16,7 @@ test("all that was changed is named, moment by moment", () => {
   expect(changeWords(story({ home: home("study-0001") }), story({ take: 1, home: home("bedroom-0002"), keyframes: BEFORE.keyframes.map((one) => ({ ...one, furniture: "bed" })) }))).toBe("the home");
   expect(changeWords(BEFORE, story({ take: 1, keyframes: script("a", "b", "c", "d", "e", "f") }))).toBe("moment 7 (left out)");
   expect(changeWords(BEFORE, story({ take: 1, keyframes: script("a", "z", "b", "c", "d", "e", "f", "g") }))).toBe("moment 2 (new)");
+  expect(changeWords(BEFORE, story({ take: 1, keyframes: script("a", "c", "d", "e", "f", "z") }))).toBe("moment 2 (left out), moment 7 → 6 (how)");
   expect(changeWords(BEFORE, BEFORE)).toBe("");
 });
 

@@ -108,9 +108,9 @@ class Look:
 
     time_s: float
     head_pitch_rad: float
-    head_side_rad: float
+    head_turn_rad: float
     spine_pitch_rad: float
-    spine_side_rad: float
+    spine_turn_rad: float
 
 
 @table

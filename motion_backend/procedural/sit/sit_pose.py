@@ -211,8 +211,9 @@ ON_TABLE = ("table", "keyboard", "paper", "pen", "desk", *PILLOWS)
 """Those of them that are on a table."""
 BUSY_ON_TABLE = frozenset(ON_TABLE) - {"desk", *PILLOWS}
 """And those on which hands do something: elbows are bent for that."""
-INSTEAD = dict.fromkeys(("desk", *PILLOWS), "knees") | dict.fromkeys(BUSY_ON_TABLE, "lap")
-"""Where hands lie if a surface is not there; on the thighs otherwise."""
+INSTEAD = {"desk": "clasped"} | dict.fromkeys(PILLOWS, "forehead") | dict.fromkeys(BUSY_ON_TABLE, "lap")
+"""Where hands lie if a surface is not there, on the thighs otherwise: who leans on a table leans on the thighs, who
+sleeps on it has the head in the hands."""
 LACKED = {
     "armrest": "armrest",
     "beside": "room beside the hips",
@@ -225,14 +226,21 @@ LACKED = {
     "folded_over": "lap to fold hands in",
 } | dict.fromkeys(ON_TABLE, "table before the seat")
 """What is not there, of what hands were to be on, in words."""
-WHERE = {"thighs": "on its thigh", "knees": "on its knee", "lap": "in the lap", "own_shin": "on its shin"}
+WHERE = {
+    "thighs": "on its thigh",
+    "knees": "on its knee",
+    "lap": "in the lap",
+    "own_shin": "on its shin",
+    "clasped": "in the other, its elbow on the thigh",
+    "forehead": "at the forehead, its elbow on the thigh",
+}
 """Where a hand is instead, in words."""
 ON_THE_FLOOR = {
     "thighs": "knees",
     "crossed_ankle": "knees",
     "belly": "knees",
-    "folded": "knees",
-    "folded_over": "knees",
+    "folded": "own_shin",
+    "folded_over": "own_shin",
     "clasped": "own_shin",
     "desk": "own_shin",
     "pillow": "own_shin",
@@ -250,7 +258,7 @@ def _on_the_floor(style: Seated) -> Seated:
     """The same on the floor: hands on the knees or round the shins; who does something sits tailorwise, and so does who
     has the hands on the thighs."""
     left, right = (ON_THE_FLOOR.get(name, name) for name in style.arms)
-    busy = style.doing not in ("", "music") or {"folded", "forehead", "thighs"} & set(style.arms)
+    busy = style.doing not in ("", "music", "doze") or {"forehead", "thighs"} & set(style.arms)
     legs = "crossed" if busy and style.legs in ("rest", "together") else style.legs
     shins = "own_shin" in (left, right)
     # Between trunk and knees there is little room for arms.

@@ -138,8 +138,8 @@ def _looking_back(start: Pose, manner: Manner, pace: float, look: Look) -> Pose 
         return None
     turned = replace(
         start,
-        head=start.head + bend(look.head_pitch_rad * manner.glance, look.head_side_rad * manner.glance),
-        spine=start.spine + bend(look.spine_pitch_rad, look.spine_side_rad * manner.glance),
+        head=start.head + bend(look.head_pitch_rad * manner.glance, turn=look.head_turn_rad * manner.glance),
+        spine=start.spine + bend(look.spine_pitch_rad, turn=look.spine_turn_rad * manner.glance),
     )
     return interpolate([0.0, look.time_s * pace], [start, turned], FPS)
 

@@ -21,6 +21,7 @@ from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.hand_placement import Grip, gripped
 from motion_backend.procedural.touch.touch_keys import (
     HeldTouches,
+    Rotate,
     Stroke,
     TouchKey,
     TouchKeys,
@@ -251,14 +252,19 @@ def _wash(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
 
 
 def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
-    """A grip that is turned to and fro about what it holds; the elbow goes up and down with it, and the trunk along."""
+    """A grip that is turned about what it holds, let go of it, and taken anew, again and again as a lid is unscrewed; the
+    elbow goes up and down with it, and the trunk along."""
     row = keys.rotate
     time, ease, held = _held(there, seconds, keys.ease_s)
     if way.grip is None:
         return held
     grip = way.grip(there)
-    angle = ease * grip.swung(_wave(row.turn_hz, time))
+    wave, back = _ratchet(row, time)
+    angle = ease * grip.swung(wave)
     held = gripped(held, way.hands[0], angle, way.laid.normal, grip, row)
+    reach = held.reach.copy()
+    reach[:, way.hands[0]] += (row.lets_go_m * ease * back)[:, None] * way.laid.normal
+    held = replace(held, reach=reach)
     left, _ = way.turned()
     along = angle / row.turn_rad
     still = np.zeros_like(along)
@@ -268,6 +274,15 @@ def _rotate(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
         spine=held.spine + np.stack([still, row.spine_turn_rad * along, row.spine_side_rad * along], axis=1),
         head=held.head + np.stack([still, row.head_turn_rad * along, row.head_side_rad * along], axis=1),
     )
+
+
+def _ratchet(row: Rotate, time: Array) -> tuple[Array, Array]:
+    """A turn of unit size at times (T,), slowly there and quickly back, from its middle on; and how far the hand has let
+    go, 0 to 1, on the way back."""
+    phase = (row.turn_hz * time + row.turning_share / 2) % 1.0
+    back = np.clip((phase - row.turning_share) / (1 - row.turning_share), 0.0, 1.0)
+    there = np.minimum(phase / row.turning_share, 1.0)
+    return -np.cos(np.pi * np.where(back > 0, 1 - back, there)), np.sin(np.pi * back)
 
 
 def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
@@ -286,8 +301,8 @@ def _busy(way: Way, there: Pose, seconds: float, keys: HeldTouches) -> Pose:
                 move.aside_m * left + move.ahead_m * ahead + move.off_m * way.laid.normal
             )
             tilt = rotations.axis_to_quat("x", -side * move.tilt_rad * wave)
-            bend = rotations.axis_to_quat("z", side * move.bend_rad * wave)
-            palms[:, index] = rotations.compose(palms[:, index], rotations.compose(tilt, bend))
+            bend = rotations.rotvec_to_quat(-move.bend_rad * wave[:, None] * left)
+            palms[:, index] = rotations.compose(rotations.compose(bend, palms[:, index]), tilt)
     spine = held.spine + np.stack([0 * aside, row.spine_turn_rad / keys.wash.usual_m * aside, 0 * aside], axis=1)
     away = 1.0 if way.laid.hand == "right" else -1.0
     ear = ease[:, None] * away * np.array([0.0, row.ear_turn_rad, row.ear_side_rad])

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
@@ -33,6 +34,13 @@ STROKES: Final = (0.14, 0.11, 0.09, 0.07, 0.05, 0.03)
 
 ON_TOPS: Final = frozenset({"pick", "put", "stir", "pour"})
 """What is only done where things lie or stand."""
+KNOCKED, KNOCKED_FROM, HIGHER = 1.36, 1.15, 0.04
+"""Who knocks on a front does so this high, where it goes up so far, else lower in such steps, but no lower than the
+second (metres at 1.70 m)."""
+EDGEWISE: Final = 1.0
+"""How far a hand that knocks is turned about its fingers, the palm to the body's middle (radians)."""
+KNUCKLES: Final = 0.07
+"""About the middle of a hand that knocks, so much of the front is there (metres)."""
 
 
 def suits(spot: Spot, caption: str, solid: Obstacles) -> bool:
@@ -45,6 +53,26 @@ def suits(spot: Spot, caption: str, solid: Obstacles) -> bool:
     left, _ = along_surface(spot)
     under = np.asarray(spot.point) - FINGER * np.asarray(spot.normal)
     return bool((solid.depth(under + APART * np.array([[TWO_HANDS], [-TWO_HANDS]]) * left) > 0).any())
+
+
+def to_knock_on(found: Sequence[Spot], solid: Obstacles, scale: float) -> list[Spot]:
+    """The same spots, those on fronts as far up as one knocks; only these where there are any, else only tops."""
+    raised = [_up_front(spot, solid, scale) for spot in found]
+    tops = [spot for spot in raised if is_top(spot.normal)]
+    return [spot for spot in raised if spot not in tops and spot.point[1] >= KNOCKED_FROM * scale] or tops or raised
+
+
+def _up_front(spot: Spot, solid: Obstacles, scale: float) -> Spot:
+    """The same front touched as high up as one knocks on it, or as it goes up from there; a top as it is."""
+    if is_top(spot.normal):
+        return spot
+    x, y, z = spot.point
+    heights = np.arange(KNOCKED * scale, y, -HIGHER)
+    points = np.array([[x, up + over, z] for up in heights for over in (-KNUCKLES, 0.0, KNUCKLES)]).reshape(-1, 3)
+    out = FINGER * np.asarray(spot.normal)
+    there = (solid.depth(points - out) > 0) & (solid.depth(points + out) < 0)
+    up = heights[there.reshape(-1, 3).all(axis=1)]
+    return replace(spot, point=(x, float(up[0]), z)) if len(up) else spot
 
 
 def is_top(normal: Array | tuple[float, float, float]) -> bool:
@@ -104,3 +132,9 @@ def palm_on(normal: Array, facing: float, hand: str) -> Array:
     fingers = rotations.normalize(fingers - (fingers @ normal) * normal)
     x, y = side * fingers, normal
     return rotations.basis_to_quat(x, y, rotations.cross(x, y))
+
+
+def on_edge(palm: Array, hand: str) -> Array:
+    """The same hand (4,) turned half on its edge, the thumb off the surface: so it is held in knocking. (4,)."""
+    side = 1.0 if hand == "left" else -1.0
+    return rotations.compose(palm, rotations.axis_to_quat("x", side * EDGEWISE))

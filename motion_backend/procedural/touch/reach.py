@@ -42,6 +42,10 @@ from motion_backend.skeleton import ARM_LENGTH, INDEX, Skeleton
 
 TRIES: Final = 8
 """So many postures are drawn by chance, of which the first is taken from which the hands get to their goals."""
+BUSY: Final = frozenset({"stir", "pour", "wash", "rotate", "knock"})
+"""What is done at a thing for a while."""
+LOWERED: Final = 0.1
+"""A pelvis that is lower than upright by more than this (metres at 1.70 m) is behind the feet."""
 LIFTED = 1e-6
 """A pelvis that rises by less than this (metres) stays on flat feet."""
 
@@ -80,7 +84,8 @@ def touch(
         raised = float(laid.wrist[1]) > keys.reach.hand.raised_from_m * skeleton.scale
         feet = () if raised else _feet(laid, manner, skeleton, keys.reach)
         step = step_before(start, feet, skeleton, depth, keys.reach.step, rng) if feet else step
-        bent = _reaching(shifted(start, step, keys.reach.step), laid, skeleton, depth, keys.reach)
+        there = shifted(start, step, keys.reach.step)
+        bent = _reaching(there, laid, skeleton, depth, keys.reach, manner.doing in BUSY)
         bent = _varied(bent, laid, yaw, skeleton, keys.reach, rng)
         # A hand on a thigh lies where the foot's step has taken it.
         bent = replace(_free_arm(step.taken(bent), laid, manner.doing, skeleton, keys.reach), ankles=bent.ankles)
@@ -258,7 +263,7 @@ def _prone_elbows(laid: Laid, row: Prone) -> Array:
     return np.stack([pole.of(index) for index in (0, 1)])
 
 
-def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, keys: ReachTable) -> Pose:
+def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, keys: ReachTable, busy: bool) -> Pose:
     """The least bent posture from which the hands get to their goals: a search over lean and crouch."""
     row, yaw = keys.search, float(yaw_of(start.hips))
     leans = np.radians(np.arange(0, row.lean_below_deg, row.lean_step_deg))
@@ -276,7 +281,8 @@ def _reaching(start: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, keys: R
         spine=np.concatenate([bent, turned, 0 * lean], axis=1),
     )
     miss = _misses(tries, laid, skeleton, depth, row)
-    effort = _effort(miss, (lean[:, 0], crouch[:, 0]), laid, skeleton, keys.effort)
+    row_of_effort = keys.effort if not busy else replace(keys.effort, lean_per_rad2=keys.effort.busy_lean_per_rad2)
+    effort = _effort(miss, (lean[:, 0], crouch[:, 0]), laid, skeleton, row_of_effort)
     chosen = int(np.argmin(effort))
     best = _on_toes(tries.at(chosen), -float(crouch[chosen, 0]), skeleton, keys.approach)
     return replace(best, head=_looking(best, laid.wrist, float(lean[chosen, 0]), yaw, skeleton, keys.gaze))
@@ -299,6 +305,9 @@ def _misses(tries: Pose, laid: Laid, skeleton: Skeleton, depth: Depth, row: Reac
     joints, _ = skeleton.forward_kinematics(tries.pelvis, trunk_and_legs(tries, skeleton))
     for name in ("left_knee", "right_knee"):
         miss = miss + np.maximum(depth(joints[:, INDEX[name]].astype(np.float64)) + row.knee_room_m, 0.0)
+    lower = np.maximum(tries.pelvis[:, 1].max() - tries.pelvis[:, 1], 0.0) > LOWERED * skeleton.scale
+    back = tries.pelvis - row.behind_m * skeleton.scale * rotations.rotate(tries.hips, np.array([0.0, 0.0, 1.0]))
+    miss = miss + lower * np.maximum(depth(back) + row.behind_room_m * skeleton.scale, 0.0)
     return np.asarray(miss)
 
 

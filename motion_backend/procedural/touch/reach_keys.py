@@ -169,7 +169,11 @@ class ReachSearch:
     head_room_m: float
     """That it keeps to furniture,"""
     knee_room_m: float
-    """and the middles of both knees."""
+    """and the middles of both knees,"""
+    behind_m: float
+    """and, so far behind the pelvis, who crouches"""
+    behind_room_m: float
+    """to what is there."""
 
 
 @table
@@ -179,6 +183,8 @@ class ReachEffort:
     miss_per_m: float
     lean_per_rad: float
     lean_per_rad2: float
+    busy_lean_per_rad2: float
+    """The same of who does something there for a while."""
     tiptoe: float
     tiptoe_per_m: float
     stretch_from_m: float

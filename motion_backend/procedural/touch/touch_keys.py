@@ -212,10 +212,14 @@ class Wash:
 
 @table
 class Rotate:
-    """A grip turned to and fro."""
+    """A grip turned, let go and taken anew."""
 
     turn_rad: float
     turn_hz: float
+    turning_share: float
+    """Of the time, that it turns; then it goes back."""
+    lets_go_m: float
+    """How far the hand is off on the way back."""
     grip_m: float
     """From the wrist to the middle of what it turns about."""
     lift_per_rad: float
@@ -241,7 +245,7 @@ class HandMove:
     tilt_rad: float = 0.0
     """About the way of the fingers, the thumb downwards."""
     bend_rad: float = 0.0
-    """At the wrist, fingers up off the surface."""
+    """At the wrist, fingers off the surface."""
     phase_share: float = 0.0
     taps: bool = False
     """Whether only its upper half is gone through."""

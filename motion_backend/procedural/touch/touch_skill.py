@@ -15,7 +15,7 @@ from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import alive
 from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
-from motion_backend.procedural.touch.hand_contacts import free_stroke, other_hand, palm_on
+from motion_backend.procedural.touch.hand_contacts import free_stroke, on_edge, other_hand, palm_on
 from motion_backend.procedural.touch.hand_placement import lies_free
 from motion_backend.procedural.touch.kneel import place_to_kneel
 from motion_backend.procedural.touch.reach import Manner, arriving, touch
@@ -65,8 +65,8 @@ def reach(body: Body, part: Part) -> None:
     normal = np.asarray(spot.normal, dtype=np.float64)
     goal = np.asarray(spot.point) + HAND_REST * normal
     obstacles, scale = body.scene.obstacles, body.skeleton.scale
-    palm = palm_on(normal, spot.facing, action.hand)
-    doing = handling_of(action.caption)
+    doing, palm = handling_of(action.caption), palm_on(normal, spot.facing, action.hand)
+    palm = on_edge(palm, action.hand) if doing == "knock" else palm
     both = with_both_hands(action.caption) or (steadies(action.caption) and not any(holding(body.pose)))
     seen = body.scene.depth_about(spot.object_id)
     is_free = partial(lies_free, side=-1.0 if action.hand == "left" else 1.0, seen=seen, scale=scale)

@@ -73,7 +73,9 @@ class Bounce:
     seen_from_m: float
     """From here on a walk is seen to bounce,"""
     seen_within_m: float
-    """wholly so from so much more."""
+    """wholly so from so much more,"""
+    seen_min_ratio: float
+    """and does so however slow it is."""
     grows_steps: float
     skip_m: float
     skip_at_phase: float
@@ -149,7 +151,8 @@ def _bounces(style: Walk) -> float:
 def _bounce(route: Route, steps: Steps, style: Walk, grown: Array | float) -> Array:
     """Up and down with the steps: highest over the standing leg, in running and skipping in the air. (T,)."""
     row = pelvis_table().bounce
-    quick = np.clip(route.speed / row.usual_mps, row.min_ratio, row.max_ratio)
+    slowest = row.min_ratio + _bounces(style) * (row.seen_min_ratio - row.min_ratio)
+    quick = np.clip(route.speed / row.usual_mps, slowest if style.double > 0 else row.min_ratio, row.max_ratio)
     if style.double > 0:
         beat = -steps.wave(row.at_phase)
         size = style.bounce - (1 - grown) * max(style.bounce - row.seen_from_m, 0.0)

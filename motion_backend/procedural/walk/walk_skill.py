@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Final
 from zlib import crc32
 
 import numpy as np
@@ -103,6 +104,14 @@ GOES_ON = 1.0
 """So far a walk leads on after a spin, where it is twice as long (metres)."""
 HALTS = 0.6
 """How far a walk goes on that has to stop (metres)."""
+FLUNG: Final = frozenset({"kick"})
+"""What flings a leg forwards."""
+SWINGS: Final = (np.array([-0.2, -0.1, 0.0]), np.array([0.25, 0.45, 0.65]), np.arange(0.3, 1.0, 0.08))
+"""Where that leg comes: to the left, up and ahead of the place where the body stands (metres at 1.70 m),"""
+SWING_ROOM: Final = 0.06
+"""with so much room about it (metres)."""
+SWING_TURNS: Final = tuple(sorted(np.arange(-np.pi, np.pi, np.pi / 12).tolist(), key=abs))
+"""How far the body may turn for it, the least first (radians)."""
 LEAVES_BEFORE = 0.5
 """So far before its end (metres) a way is left by who goes to another place near there."""
 
@@ -241,6 +250,23 @@ def _spin_on_the_way(body: Body, path: Array, style: Walk) -> Array:
     return np.concatenate([[body.place], points[split:]])
 
 
+def _where_legs_swing(body: Body) -> float:
+    """The yaw nearest to where the body looks in which a leg that is flung forwards meets nothing, else the one in which
+    it is least deep in something."""
+    solid, scale = body.scene.obstacles.solid(), body.skeleton.scale
+    yaws = body.yaw + np.array(SWING_TURNS)
+    aside, up, ahead = np.meshgrid(*SWINGS, indexing="ij")
+    x, z = (scale * one.ravel() for one in (aside, ahead))
+    sin, cos = np.sin(yaws)[:, None], np.cos(yaws)[:, None]
+    points = np.stack(
+        [body.place[0] + cos * x + sin * z, np.broadcast_to(scale * up.ravel(), (len(yaws), x.size)),
+         body.place[1] - sin * x + cos * z], axis=-1,
+    )  # fmt: skip
+    deepest = solid.depth(points.reshape(-1, 3)).reshape(len(yaws), -1).max(axis=1)
+    free = np.flatnonzero(deepest < -SWING_ROOM)
+    return float(yaws[free[0] if len(free) else np.argmin(deepest)])
+
+
 def stay(body: Body, part: Part) -> None:
     """Stand where the body is: for loco with the arms as the caption has them, and let them hang again."""
     action = part.action
@@ -258,6 +284,9 @@ def stay(body: Body, part: Part) -> None:
     if not does_it and (action.skill is not Skill.LOCO or action.goal is not None):
         body.add(settle_from(body.pose, idle(body.pose, part.hold, restless, body.rng, FPS), FPS))
         return
+    if style.doing in FLUNG:
+        go(body, body.place, _where_legs_swing(body), action)
+        body.enter(PhaseKind.STAND)
     bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
     held = replace(body.pose, **_carriage(bearing))

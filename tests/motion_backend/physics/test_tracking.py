@@ -17,7 +17,7 @@ from motion_backend.physics.mpc import SLIDING, Controller, Effort, Moment, mome
 from motion_backend.physics.physics_options import PhysicsOptions, give_physics
 from motion_backend.physics.reference import Doing, Plan
 from motion_backend.physics.task import plan_of
-from motion_backend.physics.tracker import EFFORTS, FROM_FLOOR, Tracked, Tracker
+from motion_backend.physics.tracker import AT_LEAST, EFFORTS, Tracked, Tracker
 
 
 def away(plan: Plan, done: Tracked) -> np.ndarray:
@@ -184,7 +184,7 @@ def test_getting_up_from_the_floor_is_looked_farther_ahead_and_the_pelvis_comes_
 
     monkeypatch.setattr(Tracker, "_window", goes)
     tracker.track(moment_of(tracker.reference, 0), np.zeros((0, NU)), 8)
-    assert efforts == [EFFORTS[0]] * 4 + [EFFORTS[FROM_FLOOR]] * 4
+    assert efforts == [EFFORTS[0]] * 4 + [EFFORTS[AT_LEAST[Doing.RISES]]] * 4
     data, reader = tracker._scratch()
     found = [Controller(empty_room(), data, tracker.reference, reader)._prices(at) for at in (0, 4)]
     assert (found[1][:6] > found[0][:6]).all()

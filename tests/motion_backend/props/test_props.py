@@ -161,8 +161,33 @@ def test_cups_and_boxes_stay_upright() -> None:
         for track in tracks(skill, caption):
             if track.prop in upright:
                 seen.add(track.prop)
-                assert way(track, (0, 1, 0))[:, 1].min() > np.cos(np.radians(25))
+                level = way(track, (0, 1, 0))[:, 1] > np.cos(np.radians(25))
+                assert (level | (from_mouth(skill, caption, track) < 0.26)).all()
     assert seen == upright
+
+
+def test_who_drinks_tips_the_cup_to_the_mouth_with_the_head_back() -> None:
+    drinking = [(skill, caption) for skill, caption in HOLDING if "drinking" in caption]
+    assert len(drinking) == 2
+    for skill, caption in drinking:
+        (track,) = tracks(skill, caption)
+        nose = rotations.rotate(acted_body(skill, caption).world[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
+        tipped = way(track, (0, 1, 0))[:, 1] < np.cos(np.radians(35))
+        assert tipped.mean() > 0.08
+        assert nose[track.start : track.stop, 1][tipped].min() > np.sin(np.radians(5))
+        assert from_mouth(skill, caption, track)[tipped].max() < 0.2
+
+
+def acted_body(skill: Skill, caption: str) -> Kinematics:
+    return Kinematics.of(acted(skill, caption).motion)
+
+
+def from_mouth(skill: Skill, caption: str, track: PropTrack) -> Array:
+    """Metres from the lips to a prop."""
+    body = acted_body(skill, caption)
+    lips = rotations.rotate(body.world[:, INDEX["head"]], np.array([0.0, 0.015, 0.10]))
+    away = body.positions[:, INDEX["head"]] + lips
+    return np.asarray(np.linalg.norm(away[track.start : track.stop] - track.positions, axis=1))
 
 
 def test_a_broom_reaches_the_floor() -> None:

@@ -1,0 +1,130 @@
+"""A theme as prose: headings of screenplays, labels of outlines and words to whoever makes the film are no sentences.
+
+They are said in sentences where they tell something, and left out where they do not.
+"""
+
+from __future__ import annotations
+
+import re
+from functools import lru_cache
+from typing import Final
+
+from planner_service.themes.lexicon import is_adjective, kinds_of, lemma_of, participle, verb_of
+from planner_service.themes.theme_words import theme_words
+
+_QUOTED: Final = r"(?P<quoted>“[^”]*”|\"[^\"]*\")"
+_SLUG: Final = re.compile(
+    r"\b(?P<side>INT|EXT)\.? (?:the )?(?P<place>[A-Z][A-Z0-9' ]+?)"
+    r"(?:\s*[-–—,]\s*(?P<time>[A-Z]+(?: [A-Z]+)?))?(?=\s*(?:[.:\n]|$))[.:]?\s*"
+)
+"""A place and a time as screenplays head a scene: "INT. KITCHEN - NIGHT."."""
+_TIMES: Final = frozenset(
+    ("night", "day", "dawn", "dusk", "morning", "evening", "noon", "midnight", "afternoon", "late")
+)
+_CUT: Final = re.compile(
+    r"\b(?:FADE (?:IN|OUT|TO BLACK)|(?:SMASH |MATCH |JUMP )?CUT TO(?: BLACK)?|DISSOLVE TO|THE END)\b[.:]?\s*"
+)
+_PERSON: Final = re.compile(r"\b(?P<name>[A-Z]{2,}(?: [A-Z]{2,})?),? \((?P<told>[^()]{1,80})\)(?P<mark>,?)")
+"""Somebody as screenplays bring them in: "DANNY (40s, in his work boots)"."""
+_LOUD: Final = re.compile(r"\b[A-Z]{4,}\b")
+"""Names as screenplays write them."""
+_DECADE: Final = re.compile(r"\b(?:(?:early|mid|late)[- ])?([2-9])0s\b")
+_ABOUT: Final = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
+_LABEL: Final = re.compile(
+    r"(?:(?<=^)|(?<=[.!?;] )|(?<=\n))(?:(?P<wish>goal|objective|aim|want|wants|need|motivation|task)"
+    r"|(?P<who>(?:main )?character|protagonist|hero|heroine|who)|(?P<where>setting|location|place|where)"
+    r"|(?P<left>genre|tone|style|mood|title|length|duration|rating)"
+    r"|obstacles?|conflict|problem|stakes|resolution|ending|end|beginning|middle|twist|climax|plot|story|premise|logline"
+    r"|steps?|prompt|theme|idea|action|outcome|result|what happens|start|finally)\s?: +(?P<told>[^.!?\n;]*[.!?;]?)",
+    re.IGNORECASE,
+)
+"""What an outline calls its parts: "Goal: leave the house"."""
+_ROLE: Final = re.compile(
+    r"(?:(?<=^)|(?<=[.!?;] )|(?<=, )|(?<=\band ))(character|protagonist)(?= [a-z]+s\b)", re.IGNORECASE
+)
+"""Whom notes call so without an article."""
+_REQUEST: Final = re.compile(
+    r"^(?:(?:hey|hi|hello|ok(?:ay)?|so|please|pls|um|well|yo)[,!]? )*"
+    r"(?:(?:can|could|would|will) (?:you|u|ya) (?:please |pls )?|please |pls |i(?:'d| would)? (?:want|like|need)(?: you)?"
+    r"(?: to (?:see )?)?|let's )?(?:make|do|write|show|create|film|animate|generate|tell|give|see|have)?"
+    r"(?: me| us)?(?: an?| one| the| some)?(?: \w+){0,2}?(?:(?<=one)| (?:story|film|movie|scene|video|clip|animation))"
+    r" (?:where|in which|about how|about|of)\s+(?:(?P<who>(?:an?|my|the) (?:\w+ ){1,3}?)who )?",
+    re.IGNORECASE,
+)
+"""To whoever makes the film: "can u make one where a girl gets ready"."""
+_OPENING: Final = re.compile(
+    r"^(?:(?:so,? )?basically|ok(?:ay)?,? so|so like|like|imagine(?: this)?:|picture this:)[,:]? ", re.IGNORECASE
+)
+_CLOSING: Final = re.compile(
+    r"[ ,]+(?:lol|lmao|haha(?:ha)*|xd|etc|pls|please|thx|thanks)\b(?=[.!]*\s*$)", re.IGNORECASE
+)
+_TWICE: Final = re.compile(
+    r"(?:(?<=^)|(?<=[.!?;] ))((?:the|my|our|an?|his|her|their) (?:\w+ )?(\w+)) (?:he|she) (?=(\w+))", re.IGNORECASE
+)
+"""Who does it, said twice: "the grandmother | she cooks"."""
+_SHORT: Final = re.compile(
+    rf"{_QUOTED}|\b(?P<who>I|[Yy]ou|[Ww]e|[Tt]hey|[Hh]e|[Ss]he|[Ii]t|[Tt]here|[Tt]hat|[Ww]hat|[Ww]here|[Hh]ere|[Hh]ow|[Ww]ho)"
+    r"['’](?P<end>m|re|s|ve|ll|d)\b(?= (?P<how>(?:never|always|often|rather|not) )*(?P<next>\w+))?"
+)
+_ENDINGS: Final = {"m": "am", "re": "are", "ve": "have", "ll": "will"}
+_STATE: Final = re.compile(r"\b((?:[Tt]he|[Hh]is|[Hh]er|[Tt]heir|[Mm]y) \w+)['’]s (?=(\w+)(?:[.,;!?]| and\b| but\b|$))")
+"""How a thing is: "the floor's wet, the mop's broken"."""
+_TEXTED: Final = {"u": "you", "ur": "your"}
+
+
+@lru_cache(maxsize=256)
+def prose_of(theme: str) -> str:
+    """The theme in sentences, which are read and told in its place."""
+    text = _SLUG.sub(_slug, _CUT.sub("", theme))
+    text = _PERSON.sub(_brought_in, text)
+    text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
+    text = _LABEL.sub(_labelled, text)
+    text = _ROLE.sub(r"the \1", text)
+    text = _CLOSING.sub("", _OPENING.sub("", _REQUEST.sub(lambda one: one["who"] or "", text)))
+    text = re.sub(r"\b(?:u|ur)\b", lambda one: _TEXTED[one[0]], text)
+    text = _TWICE.sub(_once, text)
+    text = _STATE.sub(lambda one: f"{one[1]} is " if is_adjective(one[2].lower()) else one[0], text)
+    return _SHORT.sub(_written_out, text).strip() or theme
+
+
+def _slug(one: re.Match[str]) -> str:
+    """Where and when in a sentence: "It is night in the kitchen"."""
+    place, time = one["place"].lower().strip(), (one["time"] or "").lower()
+    where = f"{'in' if one['side'] == 'INT' else 'on'} the {place}"
+    return f"It is {time} {where}. " if time.split(" ")[-1] in _TIMES else f"The scene is the {place}. "
+
+
+def _brought_in(one: re.Match[str]) -> str:
+    told = _DECADE.sub(lambda ten: f"about {_ABOUT[int(ten[1]) - 2]}", one["told"])
+    return f"{one['name'].title()}, {told},"
+
+
+def _labelled(one: re.Match[str]) -> str:
+    """What stands after a label as a sentence of its own."""
+    told, first = one["told"].strip(), one["told"].split(" ")[0].lower()
+    if one["left"]:
+        return ""
+    if one["wish"]:
+        return f"The goal is {'' if first == 'to' or verb_of(first) != first else 'to '}{told}"
+    if one["who"]:
+        return f"There is {told}"
+    return f"The scene is {told}" if one["where"] else told[:1].upper() + told[1:]
+
+
+def _once(one: re.Match[str]) -> str:
+    people = {one[2].lower(), lemma_of(one[2])} & theme_words()["people"]
+    return f"{one[1]} " if people and verb_of(one[3]) else one[0]
+
+
+def _written_out(one: re.Match[str]) -> str:
+    """A helper that is written together with who does it: "I've" is "I have"; what is said stays as it is."""
+    if one["quoted"]:
+        return one[0]
+    after, how, who = (one["next"] or "").lower(), one["how"] or "", one["who"]
+    base = verb_of(after)
+    helper = _ENDINGS.get(one["end"], "")
+    if one["end"] == "s":
+        helper = "has" if after == "been" or (after.endswith("ed") and not is_adjective(after)) else "is"
+    if one["end"] == "d":
+        helper = "would" if base == after != participle(base) or "rather" in how or after == "like" else "had"
+    return f"{who} {helper}"
