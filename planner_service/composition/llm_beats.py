@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from itertools import zip_longest
 from typing import Annotated, Any, Final, get_args
 
@@ -37,7 +37,9 @@ from planner_service.scripts.script import (
 from planner_service.scripts.script_library import ScriptLibrary
 from planner_service.scripts.script_repair import read_keyframe
 from planner_service.scripts.script_words import Fitting
-from planner_service.themes.beats import ThemeError, beats_of
+from planner_service.themes.beats import ReadBeat, ThemeError, beats_of, read_beats
+from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.sentence_parser import clauses_of_text
 from scene_graphs.furniture import affordances, categories_of
 
 MAX_OFFERED: Final = 12
@@ -61,18 +63,8 @@ _NOT_SHOWN: Final[dict[BeatKind, str]] = {
 _KINDS: Final = {"action": "deed", "emotion": "feeling", "mood": "feeling", "negated": "undone", "not done": "undone",
                  "thought": "memory", "flashback": "memory", "dialogue": "speech", "event": "other"}  # fmt: skip
 """Other words for kinds, as models write them."""
-_NEGATION: Final = re.compile(
-    r"(?:n't|n’t|\b(?:not|never|without|cannot|no longer|instead of|rather than|refuses to|forgets to|unable to))"
-    r"\s+(?:\w+\s+)?$",
-    re.IGNORECASE,
-)
-_MAY_DENY: Final = re.compile(
-    r"n['’]t\b|\b(?:no|not|never|nobody|nothing|neither|nor|none|without|cannot|no longer|instead|rather|refus\w+"
-    r"|unable|forg[eo]t\w*|avoid\w*|skip\w*|stop\w*|quit\w*|resist\w*|fail\w*|almost|nearly|want\w*|wish\w*|hop\w+"
-    r"|would|could|should|plan\w*|dream\w*|imagin\w*|fear\w*|afraid|if|until|before|decid\w+|intend\w*|miss\w*|too)\b",
-    re.IGNORECASE,
-)
-"""Words without which a sentence leaves nothing undone."""
+_DOUBTED: Final = frozenset(("try", "rather", "if", "would"))
+"""Words besides those of wishes and refusals in whose sentence something may be left undone."""
 _PIECE: Final = re.compile(r"(?<=[.!?;])\s+|,\s+|\s+(?:and|then|but|before|after|while|because)\s+", re.IGNORECASE)
 _SENTENCE: Final = re.compile(r"(?<=[.!?;])\s+")
 _COMMON_WORDS: Final = """and are but for from had has have her him his into its not out she that the their them then
@@ -237,11 +229,26 @@ class _Reader:
         """The beat's kind, and why it cannot be believed, if that is so."""
         word = _KINDS.get(row.kind, row.kind)
         kind: BeatKind = word if word in get_args(BeatKind) else "deed"  # type: ignore[assignment]
-        if kind in ("deed", "feeling") and _is_denied(row.text, self.theme):
+        told = max(self._told, key=lambda one: len(_stems(one.text) & _stems(row.text)), default=None)
+        denied = (told is not None and told.clause.denied) or any(one.denied for one in clauses_of_text(row.text)[:1])
+        if kind in ("deed", "feeling") and denied:
             return "undone", ""
-        if kind == "undone" and not _may_be_denied(row.text, self.theme):
+        if kind == "undone" and not (denied or (told is not None and self._is_doubtful(told))):
             return "deed", "the theme does not leave it undone"
         return kind, "" if word == kind else f"{row.kind!r} is no kind of beat"
+
+    @cached_property
+    def _told(self) -> tuple[ReadBeat, ...]:
+        """The beats of the theme as the rules read it."""
+        return read_beats(clauses_of_text(self.theme))
+
+    def _is_doubtful(self, told: ReadBeat) -> bool:
+        """Whether a beat's sentence tells of something that is not done, or only wished for, tried or remembered."""
+        near = [one for one in self._told if one.clause.sentence == told.clause.sentence]
+        words = {lemma for one in near for lemma in map(lemma_of, one.text.split())}
+        known = grammar()
+        doubted = not words.isdisjoint(known.wishes | known.refusals | _DOUBTED)
+        return doubted or any(one.beat.kind != "deed" for one in near)
 
     def _served(self, row: _Row, beat: Beat) -> PlannedBeat:
         script = self.library.find(re.sub(r"[\s_]+", "-", row.script)) if row.script else None
@@ -325,20 +332,6 @@ def _is_of(text: str, theme: str, share: float = 0.0) -> bool:
 def _stems(text: str) -> set[str]:
     words = re.findall(r"[^\W\d_]{3,}", text.lower())
     return {word[:3] for word in words if word not in _COMMON} or {word[:3] for word in words}
-
-
-def _is_denied(text: str, theme: str) -> bool:
-    """Whether the theme says right before these words, or in them, that they are not done."""
-    if re.match(r"(?:does|do|did|is|was|will|has|can|could)(?:\s+not|n['’]t)\b|(?:never|cannot|not)\b", text.lower()):
-        return True
-    place = theme.lower().find(text.lower())
-    return place > 0 and _NEGATION.search(theme[max(0, place - 40) : place]) is not None
-
-
-def _may_be_denied(text: str, theme: str) -> bool:
-    """Whether the sentence that these words are of has a word that denies something, or only wishes for it."""
-    nearest = max(_SENTENCE.split(theme), key=lambda sentence: len(_stems(text) & _stems(sentence)))
-    return _MAY_DENY.search(nearest) is not None
 
 
 def _completed(beats: Sequence[PlannedBeat], theme: str) -> list[PlannedBeat]:

@@ -1,4 +1,7 @@
-"""The sound of a film in pieces that a transcriber can take: 16 kHz, one channel, cut where it is quiet."""
+"""The sound of a film in pieces that a transcriber can take: 16 kHz, one channel, cut where it is quiet.
+
+What comes of listening to a piece: cues with times of the film, or why there are none.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from planner_service.extraction.subtitles import Cue, cues_of
 from planner_service.extraction.video import Film
 from planner_service.extraction.video_container import SOUNDS, load_av, opened, said
+from scene_graphs.errors import UserError
 
 RATE: Final = 16_000
 """Samples a second."""
@@ -109,3 +114,13 @@ def _piece(start: float, samples: Samples) -> Iterator[SoundPiece]:
         out.setframerate(RATE)
         out.writeframes(samples.astype("<i2").tobytes())
     yield SoundPiece(round(start, 3), round(start + len(samples) / RATE, 3), file.getvalue())
+
+
+class SpeechError(UserError):
+    """Speech could not be turned into words; says what would help."""
+
+
+def heard(piece: SoundPiece, start: float, end: float, text: str) -> list[Cue]:
+    """A cue from times within a piece, moved to those of the film and kept inside the piece."""
+    begin, stop = (round(min(max(piece.start + time, piece.start), piece.end), 3) for time in (start, end))
+    return cues_of(begin, stop, text) if begin < stop else []

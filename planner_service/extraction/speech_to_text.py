@@ -9,10 +9,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Final, Protocol
 
-from planner_service.extraction.audio import SoundPiece, sound_of
+from planner_service.extraction.audio import SoundPiece, SpeechError, heard, sound_of
 from planner_service.extraction.shot_detection import Progress
 from planner_service.extraction.subtitles import MAX_CUES, Cue, Subtitles, ordered
-from planner_service.extraction.transcription_result import SpeechError, heard
 from planner_service.extraction.video import Film
 from planner_service.settings import Settings, SettingsError
 

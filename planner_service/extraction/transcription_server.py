@@ -11,9 +11,8 @@ from typing import Any, Final
 
 import httpx
 
-from planner_service.extraction.audio import SoundPiece
+from planner_service.extraction.audio import SoundPiece, SpeechError, heard
 from planner_service.extraction.subtitles import Cue
-from planner_service.extraction.transcription_result import SpeechError, heard
 from planner_service.llm.factory import base_url_of
 from planner_service.llm.http_transport import ATTEMPTS, BUSY, FIRST_WAIT, message_of, retry_after, without_key
 from planner_service.settings import Settings, SettingsError

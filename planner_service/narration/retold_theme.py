@@ -302,7 +302,7 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
         later = {token.told.lower() for token in told.tokens[stretch.end : told.end_of(stretch)]}
         alone = later.isdisjoint({"he", "she", "they", *voice.name.lower().split()[-1:]})  # "slighted, Ida withdrew"
         asked = beats[stretch.beat].kind in ("deed", "feeling") and not beats[stretch.beat].who
-        if opens and alone and verb is not None and asked and _is_finite(verb.told):
+        if opens and alone and verb is not None and asked and _is_finite(verb):
             first = told.tokens[stretch.start]
             first.told = first.told[:1].lower() + first.told[1:]
             first.before, first.is_name = f"{voice['they'] if named else voice.name} ", True
@@ -311,10 +311,12 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
             named = True
 
 
-def _is_finite(verb: str) -> bool:
-    first = verb.split()[0].lower()
+def _is_finite(verb: Token) -> bool:
+    """Whether a verb is told in the past: "read" of "reads" is, of which the form alone tells nothing."""
+    first = verb.told.split()[0].lower()
     same = first in bases(first) and past(first) == first  # "put"
-    return first in _TOLD_IN_PAST or same or (form_of(first) == "past" and not is_adjective(first))
+    changed = first != verb.low or first in _TOLD_IN_PAST or same
+    return changed or (form_of(first) == "past" and not is_adjective(first))
 
 
 def _capitalise(told: Retelling) -> None:

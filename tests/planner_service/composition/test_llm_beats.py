@@ -246,6 +246,32 @@ def test_what_the_theme_does_not_deny_is_not_undone_because_the_model_says_so() 
     assert "by rules" in one.note
 
 
+@for_each(
+    ("theme", "text", "said", "kind"),
+    [
+        ("She refuses to sit down and leaves.", "sit down", "deed", "undone"),
+        ("He forgets to lock the door and sleeps.", "lock the door", "deed", "undone"),
+        ("Instead of going to bed, he reads.", "going to bed", "deed", "undone"),
+        ("Instead of going to bed, he reads.", "reads", "deed", "deed"),
+        ("He never sits down, he dances.", "dances", "deed", "deed"),
+        ("She leaves without saying goodbye.", "saying goodbye", "deed", "undone"),
+        ("Without a word she sits down.", "sits down", "deed", "deed"),
+        ("No longer tired, she dances.", "dances", "deed", "deed"),
+        ("He plans to call her tomorrow and goes to bed.", "call her tomorrow", "undone", "undone"),
+        ("She almost drops the cup.", "drops the cup", "undone", "undone"),
+        ("He would rather sleep than work.", "work", "undone", "undone"),
+        ("He tries to open the jar and fails.", "open the jar", "undone", "undone"),
+        ("He reads. She cooks.", "reads", "undone", "deed"),
+        ("He sits down and reads a book.", "reads a book", "undone", "deed"),
+    ],
+)
+def test_a_models_word_for_what_is_not_done_is_held_against_the_themes(
+    theme: str, text: str, said: str, kind: str
+) -> None:
+    found = planned(f"{theme} Later he eats soup.", {"beats": [written(text, kind=said), written("eats soup")]}).beats
+    assert next(one.beat.kind for one in found if one.beat.text == text) == kind
+
+
 def test_what_the_theme_does_not_say_is_left_out_and_said() -> None:
     found = planned(EVENING, {"beats": [written("conquers Bohemia"), written("drinks it on the sofa")]})
     assert [one.beat.text for one in found.beats] == ["drinks it on the sofa"]

@@ -20,9 +20,8 @@ from film_made import Drawn, Making, film_of
 from pydantic import SecretStr
 
 from planner_service.extraction import transcription_server
-from planner_service.extraction.audio import MAX_AUDIO_SECONDS, RATE, SoundPiece, sound_of
+from planner_service.extraction.audio import MAX_AUDIO_SECONDS, RATE, SoundPiece, SpeechError, sound_of
 from planner_service.extraction.speech_to_text import hear, load_transcriber
-from planner_service.extraction.transcription_result import SpeechError
 from planner_service.extraction.transcription_server import ServedTranscriber
 from planner_service.extraction.video import Film, open_film
 from planner_service.settings import Settings, SettingsError

@@ -384,6 +384,7 @@ def retold(theme: str, voice: Voice = SHE) -> str:
         ('She shouts "I am late!" and runs.', 'Ana shouted "I am late!" and ran.'),
         ("Comes home. Sits down and cries.", "Ana came home. She sat down and cried."),
         ("Feed the cat. Put it to bed. Set the table.", "Ana fed the cat. She put it to bed. She set the table."),
+        ("Reads. Sits. Sleeps. Dances.", "Ana read. She sat. She slept. She danced."),
         ("Ana lies down, hands on her knees.", "Ana lay down, hands on her knees."),
         ("Ana came home and sat down.", "Ana came home and sat down."),
         ("A person walks to the sofa. The person sits down.", "Ana walked to the sofa. Ana sat down."),
