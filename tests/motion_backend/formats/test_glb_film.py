@@ -177,6 +177,9 @@ def animated(document, binary: bytes, name: str, path: str):
 
 def test_a_prop_is_a_node_where_its_track_has_it_and_of_no_size_elsewhere():
     motion, role = holding()
+    frames = np.arange(len(motion))
+    keyframes = np.where(frames < 3, 7, np.where(frames < len(motion) - 3, motion.actions, 8)).astype(np.int32)
+    motion = replace(motion, actions=keyframes)  # in whose first and last frames nothing is held
     (track,) = prop_tracks(motion, role)
     assert 0 < track.start < track.stop < len(motion)
     for data in (film_glb(HOME, motion, role), props_glb(motion, role)):
