@@ -117,10 +117,12 @@ def diffusion() -> dict[str, Any]:
         "noised": rows(schedule.noised(clean, noise, torch.tensor([0, 99]))),
         "steps": steps,
         "ddpm": rows(
-            torch.stack([
-                ddim_step(schedule, clean[0], noise[0], step, step - 1 if step else None, noise[1])
-                for step in (0, 50, 99)
-            ])
+            torch.stack(
+                [
+                    ddim_step(schedule, clean[0], noise[0], step, step - 1 if step else None, noise[1])
+                    for step in (0, 50, 99)
+                ]
+            )
         ),
         "ddim": rows(torch.stack([ddim_step(schedule, clean[0], noise[0], *step) for step in steps])),
     }
