@@ -6,7 +6,6 @@ The noise process is noise_schedule.py, the network denoiser.py, what pulls its 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 from typing import Final
 
 import numpy as np
@@ -23,8 +22,6 @@ from motion_backend.skeleton import INDEX
 
 DDIM_STEPS: Final = 10
 """Of sampling, where nothing else is asked for: five are as good, twenty are no better."""
-ORDINARY: Final = 0.9
-"""Metres a second below which nobody's pace is ordinary: who was recorded so went round bends or hardly in stride."""
 LEGS: Final = [
     PLACES.start + 3 * (INDEX[name] - 1) + axis for name in ("left_ankle", "right_ankle") for axis in (0, 1, 2)
 ]
@@ -69,17 +66,9 @@ class Sampler:
     learned_from: tuple[str, ...] = ()
     """Everybody who was recorded in what it has learned: they are no judges of it."""
 
-    @cached_property
-    def crowd(self) -> tuple[int, ...]:
-        """Whose walks bodies have: of all who are told apart those of an ordinary pace, where that is known."""
-        gaits = range(1, self.gaits + 1)
-        if self.paces is None:
-            return tuple(gaits)
-        return tuple(gait for gait in gaits if self.paces[gait - 1] >= ORDINARY) or tuple(gaits)
-
     def gait_of(self, seed: int) -> int:
         """Whose walk a body of that seed has; 0 where none are told apart."""
-        return self.crowd[seed % len(self.crowd)] if self.crowd else 0
+        return 1 + seed % self.gaits if self.gaits else 0
 
     def pace_of(self, gait: int) -> float | None:
         """Metres a second at which he walked whose gait it is; None where that is not known."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -17,7 +16,6 @@ from motion_backend.diffusion import backend
 from motion_backend.diffusion.backend import WEIGHTS, DiffusionBackend, walking
 from motion_backend.diffusion.checkpoint import CheckpointError
 from motion_backend.diffusion.learned_walker import LearnedGait
-from motion_backend.diffusion.sampler import ORDINARY
 from motion_backend.director import Director, shares
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
@@ -85,25 +83,11 @@ def test_who_takes_over_from_a_body_that_stands_flings_no_foot() -> None:
     """In whosever gait: at the seam no joint changes its speed more, from frame to frame, than in a quick stride."""
     past = standing_at_the_origin().then(standing_at_the_origin())
     for gait in (1, 3, 8, 40):
-        made = (
-            LearnedGait(walking(), gait).begin(past, np.random.default_rng(gait)).window(straight(past, 1.2).ahead(0))
-        )
+        walker = LearnedGait(walking(), gait).begin(past, np.random.default_rng(gait))
+        made = walker.window(straight(past, 1.2).ahead(0))
         whole = past.then(made)[len(past) - 2 : len(past) + 3]
         places = build_skeleton().forward_kinematics(whole.root, whole.local)[0].astype(np.float64)
         assert np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max() * 30 < FLUNG, gait
-
-
-def test_bodies_walk_as_people_of_an_ordinary_pace() -> None:
-    """Each of them in turn; where no paces are known, or all are slow, everybody's."""
-    sampler = walking()
-    assert sampler.paces is not None
-    cast = [sampler.gait_of(seed) for seed in range(len(sampler.crowd))]
-    assert cast == [gait for gait in range(1, sampler.gaits + 1) if sampler.paces[gait - 1] >= ORDINARY]
-    assert len(cast) < sampler.gaits
-    assert sampler.gait_of(len(cast)) == cast[0]
-    assert replace(sampler, paces=None).crowd == replace(sampler, paces=0.1 * sampler.paces).crowd
-    assert len(replace(sampler, paces=None).crowd) == sampler.gaits
-    assert replace(sampler, gaits=0, paces=None).gait_of(7) == 0
 
 
 def test_two_bodies_walk_in_two_gaits() -> None:
