@@ -102,6 +102,6 @@ def test_the_report_of_a_story_says_what_was_done_otherwise(monkeypatch: pytest.
         ),
     )
     story = Pipeline().make(StoryRequest("", keyframes=lines))
-    said = "no table before the seat: each hand on its knee"
+    said = "no table before the seat: each hand in the other, its elbow on the thigh"
     assert [row["notes"] for row in report_to_dict(story)["keyframes"]] == [[], [said]]
     assert f"moment 2: {said}" in story_to_markdown(story)

