@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Final
 
 from motion_backend.language.minilm import MiniLM
@@ -27,13 +28,14 @@ from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
-from planner_service.themes.lexicon import grammar, lemma_of
+from planner_service.themes.lexicon import Words, grammar, lemma_of
 from planner_service.themes.no_deeds import is_state
 from planner_service.themes.opening_words import comes_in, opening_of
 from planner_service.themes.protagonist import head_of, is_name, is_person
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
+from scene_graphs.data_tables import read_table
 from scene_graphs.furniture import categories_of, group_of
 
 SURER: Final = 0.45
@@ -98,18 +100,6 @@ TOUCHES: Final = (
 IN_HANDS: Final = ("phone", "piano", "controller", "typing", "writing", "eating", "drinking", "book", "music")
 """Parts of captions in which hands are seen with a thing."""
 _INSTRUMENTS: Final = frozenset((*things_called("instrument"), "piano", "keyboard", "organ"))
-TEMPTING: Final = {
-    part: frozenset(words.split())
-    for part, words in {
-        "piano": "piano keyboard organ music song melody chord scale key note",
-        "dancing": "dance dancer music song record radio twirl spin party",
-        "phone": "phone telephone mobile call caller dial hello voicemail line talk speak answer number message",
-        "listening to music": "music song radio record headphone headphones album concert playlist",
-        "typing": "type computer laptop keyboard email mail code report essay novel letter message write screen",
-        "controller": "game controller console joystick round level",
-    }.items()
-}
-"""Captions whose thing or way everybody knows, with the words that tell of it."""
 _PLAYS: Final = ("play", "practise", "practice", "strum", "tune", "perform", "pluck")
 """Verbs of what is done with the instrument that was named last."""
 _THINGS: Final = re.compile(
@@ -122,6 +112,7 @@ _AT_TABLES: Final = ("dining chair", "chair", "office chair")
 _RESTING: Final = frozenset(("sit", "lie", "perch", "sink", "settle", "flop", "slump", "collapse", "stretch", "sprawl",
                              "lounge", "curl", "recline", "rest", "drop", "stay", "sleep"))  # fmt: skip
 """Verbs of which who sits or lies there is all that is told."""
+_DOWN: Final = re.compile(r"\b(?:kneeling|crouching)\b")
 _NOT_DRAWN: Final = grammar().prepositions | frozenset(
     (
         "up",
@@ -214,7 +205,7 @@ class DeedReader:
     def _tempting(self, clause: Clause) -> tuple[str, ...]:
         """Parts of captions of what nobody takes for anything else, where no words tell of it: nobody plays the piano
         for what a violinist does, nor dances with a box."""
-        return tuple(part for part, words in TEMPTING.items() if words.isdisjoint(self._about.get(clause.text, ())))
+        return tuple(part for part, words in tempting().items() if words.isdisjoint(self._about.get(clause.text, ())))
 
     def _never(self, clause: Clause) -> tuple[str, ...]:
         """Parts of captions that must not be played for a clause, nor for the instrument that is played in it."""
@@ -323,6 +314,8 @@ class DeedReader:
         rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
         if by_table and rests and (RESTS.match(clause.text) or (deed.named and clause.verb in _RESTING)):
             return True  # whatever hands do there
+        if deed.skill in RISINGS and keyframes and all(rises_again(one) for one in keyframes):
+            return True  # who kneels gets up
         if deed.skill in RISINGS and any(one.skill in RISINGS or getattr(one, "already", False) for one in keyframes):
             if deed.named:
                 return True  # "jumps out of bed"
@@ -479,6 +472,18 @@ def _falls_into_bed(deed: Deed, clause: Clause) -> bool:
 def _only_seems(best: tuple[Skill, str], clause: Clause) -> bool:
     """Whether somebody eats or drinks in what a clause is likeliest shown by, which it does not tell of."""
     return any(part in best[1] for part in ("eating", "drinking")) and not shows(*best, clause, own=True)
+
+
+@cache
+def tempting() -> Mapping[str, frozenset[str]]:
+    """Captions whose thing or way everybody knows, with the words that tell of it: data/tempting_captions.toml."""
+    known: dict[str, frozenset[str]] = read_table("planner_service", "tempting_captions.toml", dict[str, Words])
+    return known
+
+
+def rises_again(keyframe: Keyframe) -> bool:
+    """Whether somebody gets down to the floor in it and is on their feet again at its end."""
+    return keyframe.skill is Skill.LOCO and bool(_DOWN.search(keyframe.caption))
 
 
 def _rising(deed: Deed, likely: Likely) -> Skill:

@@ -19,7 +19,7 @@ from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.caption_senses import only_in, shows
 from planner_service.composition.deed_lexicon import Deed, row_of
 from planner_service.composition.deed_places import DeedPlaces
-from planner_service.composition.deed_reader import TOUCHES, DeedReader
+from planner_service.composition.deed_reader import TOUCHES, DeedReader, rises_again
 from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.composition.earlier_deeds import done_before, with_its_noun
 from planner_service.composition.furniture_words import (
@@ -388,13 +388,16 @@ class KeyframeWriter:
     def _rise(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Get up."""
         last = self.keyframes[-1]
+        if self.body.resting is None and rises_again(last) and not deed.named:
+            self.body.show(index)
+            return
         if self.body.resting is None and last.skill in RISINGS:
             ways = self.reader.likeliest(self._clause, last.skill, captions()[last.skill.value]) if self._clause else ()
             if ways and last.caption not in ways:  # who "wakes up and gets up slowly"
                 self.keyframes[-1] = last.model_copy(update={"caption": ways[0]})
             self.body.show(index)
             return
-        rose = any(one.skill in RISINGS for one in self.keyframes)
+        rose = any(one.skill in RISINGS or rises_again(one) for one in self.keyframes)
         out = self._clause is not None and self._clause.verb in ("crawl", "climb", "scramble")  # from under a sink
         if self.body.resting is None and not deed.named and (rose or out):
             self.why[index] = "the body is on its feet already"

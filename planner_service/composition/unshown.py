@@ -179,8 +179,9 @@ def _is_place(what: str) -> bool:
 
 def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
     """Whether a keyframe is seen to be there, as far as its furniture and its caption tell."""
-    if any(lemma_of(word) in map(lemma_of, _words(keyframe.caption)) for word in _words(what)[1:]):
-        return True  # "reads in the book": that is in the hands
+    in_hands = _held_words([keyframe]).union(map(lemma_of, _words(keyframe.caption)))
+    if any(lemma_of(word) in in_hands for word in _words(what)[1:]):
+        return True  # "reads in the book", "reads on her phone"
     pieces = pieces_in(what)
     if lemma_of(_words(what)[-1]) in _NOWHERE:
         return False

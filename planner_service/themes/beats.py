@@ -248,7 +248,7 @@ def _kind(clause: Clause, who: str) -> BeatKind:
     quotes = any(len(quote.split()) > 1 or quote[-1] in ".,!?" for quote in clause.quotes)
     quotes = quotes and clause.verb not in words["voiced_verbs"]
     if says or (quotes and _RECEIVERS.isdisjoint(clause.lemmas)):
-        return "speech" if not who else "other"
+        return "other" if who else "undone" if clause.denied else "speech"
     if who or (clause.aside and (clause.verb or not is_feeling(clause))):
         return "other"
     staggers = clause.verb in words["falling_verbs"] and clause.text.split()[0].lower() in NEARLY

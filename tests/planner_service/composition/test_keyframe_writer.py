@@ -240,6 +240,14 @@ def test_who_starts_again_does_again_what_was_done_at_rest() -> None:
     assert sits[0].caption == sits[1].caption
 
 
+def test_who_knelt_gets_up_from_the_knees_and_from_no_chair_sat_on_for_it() -> None:
+    prayed = planned("An old woman kneels to pray, gets up and lies down on the bed.")
+    assert [one.skill for one in own(prayed)] == [Skill.LOCO, Skill.LIEDOWN]
+    assert not any(beat.why for beat in prayed.beats)
+    looked = planned("He kneels under the desk to look for his ring, then gets up and smiles.")
+    assert Skill.SITDOWN not in [one.skill for one in looked.keyframes]
+
+
 def test_who_tries_again_does_again_what_was_tried() -> None:
     script = planned("He tries to fix the clock, scratches his head and tries again.")
     assert [keyframe.furniture for keyframe in own(script)][:1] == [keyframe.furniture for keyframe in own(script)][-1:]

@@ -31,6 +31,8 @@ CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
     [
         ("She packs a suitcase in a hurry.", HAND, ("a suitcase",)),
         ("She closes the wardrobe.", HAND, ()),
+        ("She scrolls on her phone.", READING, ("on her phone",)),
+        ("She scrolls on her phone.", READING.model_copy(update={"held": "phone"}), ()),
         ("She looks for her keys.", HAND, ()),
         ("He turns the music up.", HAND, ()),
         ("He pulls out the battery.", HAND, ("the battery",)),
