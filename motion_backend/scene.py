@@ -37,6 +37,11 @@ class Scene:
         """Where one can walk."""
         return Walkable(self.home)
 
+    @cached_property
+    def first_free(self) -> tuple[float, float]:
+        """A free place of the first room, always the same, [x, z]: whatever is to be used is walked to from there."""
+        return self.walkable.random_point(np.random.default_rng(0), 0)
+
     def beginning(self, seed: int) -> tuple[tuple[float, float], float]:
         """Where a body begins, [x, z], and its yaw: a free place of the first room that the seed chooses."""
         rng = np.random.default_rng([seed, 0])

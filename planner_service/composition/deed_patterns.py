@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from typing import Final
 
@@ -35,9 +35,19 @@ def fits(pattern: Pattern, lemmas: Sequence[str]) -> bool:
     return bool(lemmas) and lemmas[0] in first and fits(rest, lemmas[1:])
 
 
-def says(ways: Iterable[str], lemmas: Sequence[str]) -> bool:
+def says(ways: tuple[str, ...], lemmas: Sequence[str]) -> bool:
     """Whether words say what one of some patterns says."""
-    return any(fits(pattern_of(way), lemmas) for way in ways)
+    by_first = _by_first_word(ways)
+    likely = by_first.get(lemmas[0] if lemmas else "$", by_first[""])
+    return any(fits(pattern, lemmas) for pattern in likely)
+
+
+@cache
+def _by_first_word(ways: tuple[str, ...]) -> dict[str, list[Pattern]]:
+    """The patterns that words may say, by the first of them; "" for any other: those that begin with a gap."""
+    patterns = [pattern_of(way) for way in ways]
+    first = {form for pattern in patterns if pattern for form in pattern[0]}
+    return {form: [one for one in patterns if not one or not one[0] or form in one[0]] for form in (*first, "")}
 
 
 @cache

@@ -566,7 +566,8 @@ class KeyframeWriter:
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
     """Those of some captions that a deed may be seen in: the only ones that show it, of the skill's where they have
     none, and nobody gets down on the floor for what is not told to be low."""
-    only = [[one for one in those if any(part in one.lower() for part in only_in(clause) or ())]
+    parts = only_in(clause) or ()
+    only = [[one for one in those if any(part in one.lower() for part in parts)]
             for those in (some, captions()[skill.value])]  # fmt: skip
     if any(only):
         return only[0] or only[1]

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-import numpy as np
-
 from motion_backend.motion import Skill, moment
 from motion_backend.scene import scene_of
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place, can_stand
@@ -168,6 +166,5 @@ def usable_offers(home: Home, checked: bool = False) -> dict[str, frozenset[str]
 
 def is_usable(home: Home, object_id: str, need: str) -> bool:
     """Whether a body that walks in a home gets at one of its objects to sit, lie or touch."""
-    walkable = scene_of(home).walkable
-    start = walkable.random_point(np.random.default_rng(0), 0)
-    return any(can_stand(walkable, start, spot) for spot in spots(home.object(object_id), need))
+    scene, uses = scene_of(home), spots(home.object(object_id), need)
+    return any(can_stand(scene.walkable, scene.first_free, spot) for spot in uses)

@@ -86,7 +86,7 @@ def in_hand(row: DeedRow, thing: str) -> str:
     return next((holder for part in (head, content) for holder, those in holders if is_one(part, those)), takes.usual)
 
 
-def told_by(ways: Mapping[str, Iterable[str]], lemmas: Sequence[str]) -> str:
+def told_by(ways: Mapping[str, tuple[str, ...]], lemmas: Sequence[str]) -> str:
     """The first name whose ways to say it say what the words do; "" where none does."""
     return next((name for name, those in ways.items() if says(those, lemmas)), "")
 

@@ -423,6 +423,7 @@ def tells_of_others(clause: Clause, clauses: Sequence[Clause], hero: str, pronou
     return several and not re.search(r"\band\b", hero)
 
 
+@lru_cache(maxsize=1024)
 def head_of(subject: str) -> str:
     """The noun of a subject: "the old nurse after her shift" is "nurse", "a boy of six" is "boy"."""
     words: list[str] = []
