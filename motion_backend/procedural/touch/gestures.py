@@ -15,6 +15,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays
+from motion_backend.procedural.own_time import own_time
 from motion_backend.procedural.pose import ROTATIONS, Pose, interpolate, smooth, spline
 from motion_backend.procedural.touch.bursts import Burst
 from motion_backend.procedural.touch.kneel import feet_behind, foot_back, foot_in_the_air
@@ -135,6 +136,11 @@ class MoveKey:
     """How far the soles of both are tipped up on their balls."""
     legs: tuple[Leg, Leg] = ("stands", "stands")
     """What the left and the right do: stand, are on the way back and off the floor, or kneel on toes and knee."""
+
+    @property
+    def steps(self) -> bool:
+        """Whether a foot goes anywhere."""
+        return any((*self.left_foot_m, *self.right_foot_m, self.flight_m)) or self.legs != ("stands", "stands")
 
     def pose(self, held: Pose, spread: float = 1.0) -> Pose:
         """That key of a single held pose; level ways of feet and pelvis are such a share of what it says."""
@@ -278,17 +284,26 @@ def room_for(doing: str) -> float:
     return move.room_m if move is not None else 0.0
 
 
-def gesture(held: Pose, doing: str, spread: float = 1.0) -> Pose:
+def gesture(held: Pose, doing: str, spread: float = 1.0, rng: np.random.Generator | None = None) -> Pose:
     """A held pose of T frames with hands that do something; as it was where `doing` is none of `gesture_names`.
 
-    Feet and pelvis go such a share of their ways over the floor.
+    Feet and pelvis go such a share of their ways over the floor. By chance what keeps no beat and takes no step has a
+    tempo of its own.
     """
     if doing not in gesture_names():
         return held
     time = np.arange(1, len(held) + 1) / FPS
     seconds = gesture_table().ease_s
     ease = smooth(time / seconds) * smooth((time[-1] - time) / seconds)
+    if rng is not None and not _keeps_pace(doing):
+        time = own_time(time, rng)
     return _OWN.get(doing, partial(_move, doing=doing, spread=spread))(held, time, ease)
+
+
+def _keeps_pace(doing: str) -> bool:
+    """Whether it is done to a beat, or with steps."""
+    move = gesture_table().moves.get(doing)
+    return move is None or move.lingers_at_share is not None or any(key.steps for key in move.keys)
 
 
 def wave_of(rate: float | None, time: Array, phase: float = 0.0, burst: Burst | None = None) -> Array:
@@ -323,7 +338,8 @@ def _through_keys(held: Pose, time: Array, rows: Move, spread: float) -> Pose:
     base, at = held.at(0), rows.times(float(time[-1]))
     keys = [MoveKey(at_share=0.0), *rows.keys]
     poses, turned = [key.pose(base, spread) for key in keys], np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys])
-    knots = np.append(at, time[-1])
+    clock = np.arange(1, len(held) + 1) / FPS
+    knots = np.interp(np.append(at, time[-1]), [0.0, *time], [0.0, *clock])
     way = interpolate(knots.tolist(), [*poses * len(at), base], FPS)
     way = _arms_later(way, rows.arms_late_s * FPS)
     added = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "elbows", "reaching", "pressing")
@@ -338,7 +354,7 @@ def _through_keys(held: Pose, time: Array, rows: Move, spread: float) -> Pose:
         return done
     # Who turns about in it goes on from there in the next turn.
     by = np.concatenate([*(turned + turn * turned[-1] for turn in range(len(at))), len(at) * turned[-1:]])
-    return _turned(done, base.ankles.mean(axis=0), spline(knots, by, time))
+    return _turned(done, base.ankles.mean(axis=0), spline(knots, by, clock))
 
 
 def _arms_later(pose: Pose, frames: float) -> Pose:

@@ -325,7 +325,7 @@ def stay(body: Body, part: Part) -> None:
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
     body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(body.pose, **_carriage(bearing))], FPS))
     held = _idle(body, part.hold, restless)
-    body.add(_from_leg_to_leg(body, held, gesture(held, style.doing, spread), restless))
+    body.add(_from_leg_to_leg(body, held, gesture(held, style.doing, spread, body.rng), restless))
     if style.bearing.arms != ("hang", "hang"):
         stands = {name: getattr(body.pose, name) for name in LEGS}
         body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(at_ease, **stands)], FPS))
