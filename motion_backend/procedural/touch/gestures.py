@@ -287,23 +287,25 @@ def room_for(doing: str) -> float:
 def gesture(held: Pose, doing: str, spread: float = 1.0, rng: np.random.Generator | None = None) -> Pose:
     """A held pose of T frames with hands that do something; as it was where `doing` is none of `gesture_names`.
 
-    Feet and pelvis go such a share of their ways over the floor. By chance what keeps no beat and takes no step has a
-    tempo of its own.
+    Feet and pelvis go such a share of their ways over the floor. By chance what is done again and again, without a
+    beat, has a tempo of its own.
     """
     if doing not in gesture_names():
         return held
     time = np.arange(1, len(held) + 1) / FPS
     seconds = gesture_table().ease_s
     ease = smooth(time / seconds) * smooth((time[-1] - time) / seconds)
-    if rng is not None and not _keeps_pace(doing):
+    if rng is not None and _is_free_of_beat(doing, float(time[-1])):
         time = own_time(time, rng)
     return _OWN.get(doing, partial(_move, doing=doing, spread=spread))(held, time, ease)
 
 
-def _keeps_pace(doing: str) -> bool:
-    """Whether it is done to a beat, or with steps."""
+def _is_free_of_beat(doing: str, seconds: float) -> bool:
+    """Whether it is done again and again in so many seconds, neither to a beat nor with steps."""
     move = gesture_table().moves.get(doing)
-    return move is None or move.lingers_at_share is not None or any(key.steps for key in move.keys)
+    if move is None or move.lingers_at_share is not None:
+        return False
+    return not move.keys or (len(move.times(seconds)) > 1 and not any(key.steps for key in move.keys))
 
 
 def wave_of(rate: float | None, time: Array, phase: float = 0.0, burst: Burst | None = None) -> Array:
@@ -337,7 +339,10 @@ def _through_keys(held: Pose, time: Array, rows: Move, spread: float) -> Pose:
     """T frames of a held pose that go through the keys and back, as often as there is time for."""
     base, at = held.at(0), rows.times(float(time[-1]))
     keys = [MoveKey(at_share=0.0), *rows.keys]
-    poses, turned = [key.pose(base, spread) for key in keys], np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys])
+    poses, turned = (
+        [key.pose(base, spread) for key in keys],
+        np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys]),
+    )
     clock = np.arange(1, len(held) + 1) / FPS
     knots = np.interp(np.append(at, time[-1]), [0.0, *time], [0.0, *clock])
     way = interpolate(knots.tolist(), [*poses * len(at), base], FPS)

@@ -390,7 +390,8 @@ def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array]
 
 def _coming(route: Route, frames: int) -> Array:
     """How far the way will have turned so many frames later. (T,) radians."""
-    return np.concatenate([route.heading[frames:], np.full(frames, route.heading[-1])])[: len(route.heading)] - route.heading
+    later = np.concatenate([route.heading[frames:], np.full(frames, route.heading[-1])])
+    return np.asarray(later[: len(route.heading)] - route.heading)
 
 
 def _chest_first(route: Route) -> Array:
