@@ -195,6 +195,8 @@ class Move:
     """So much later than hips and feet arms come to each key."""
     room_m: float = 0.0
     """How far about the body the floor is to be free, beyond what standing there needs (at 1.70 m)."""
+    goes_for_room: bool = False
+    """Whether who has not so much of it goes to where there is more; else all is done nearer to the spot."""
 
     def times(self, seconds: float) -> Array:
         """When the keys are reached in so many seconds, first of them the pose that is held. (turns, 1 + keys)."""
@@ -272,12 +274,6 @@ def gesture_table() -> Gestures:
     return rows
 
 
-def room_for(doing: str) -> float:
-    """How much free floor about a standing body it takes (metres at 1.70 m)."""
-    move = gesture_table().moves.get(doing)
-    return move.room_m if move is not None else 0.0
-
-
 def gesture(held: Pose, doing: str, spread: float = 1.0) -> Pose:
     """A held pose of T frames with hands that do something; as it was where `doing` is none of `gesture_names`.
 
@@ -289,6 +285,12 @@ def gesture(held: Pose, doing: str, spread: float = 1.0) -> Pose:
     seconds = gesture_table().ease_s
     ease = smooth(time / seconds) * smooth((time[-1] - time) / seconds)
     return _OWN.get(doing, partial(_move, doing=doing, spread=spread))(held, time, ease)
+
+
+def room_for(doing: str) -> tuple[float, bool]:
+    """How much free floor about a standing body it takes (metres at 1.70 m), and whether that is gone to."""
+    move = gesture_table().moves.get(doing, Move())
+    return move.room_m, move.goes_for_room
 
 
 def wave_of(rate: float | None, time: Array, phase: float = 0.0, burst: Burst | None = None) -> Array:

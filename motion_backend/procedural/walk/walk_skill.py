@@ -316,8 +316,9 @@ def stay(body: Body, part: Part) -> None:
     if style.doing in FLUNG:
         go(body, body.place, _where_legs_swing(body), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
-    room = room_for(style.doing) * body.skeleton.scale
-    if _free(body, body.place) < room:
+    room, goes = room_for(style.doing)
+    room *= body.skeleton.scale
+    if goes and _free(body, body.place) < room:
         go(body, *_open_floor(body, room), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
     spread = min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0
