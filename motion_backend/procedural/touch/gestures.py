@@ -201,6 +201,8 @@ class Move:
     """So much later than hips and feet arms come to each key."""
     room_m: float = 0.0
     """How far about the body the floor is to be free, beyond what standing there needs (at 1.70 m)."""
+    goes_for_room: bool = False
+    """Whether who has not so much of it goes to where there is more; else all is done nearer to the spot."""
 
     def times(self, seconds: float) -> Array:
         """When the keys are reached in so many seconds, first of them the pose that is held. (turns, 1 + keys)."""
@@ -278,12 +280,6 @@ def gesture_table() -> Gestures:
     return rows
 
 
-def room_for(doing: str) -> float:
-    """How much free floor about a standing body it takes (metres at 1.70 m)."""
-    move = gesture_table().moves.get(doing)
-    return move.room_m if move is not None else 0.0
-
-
 def gesture(held: Pose, doing: str, spread: float = 1.0, rng: np.random.Generator | None = None) -> Pose:
     """A held pose of T frames with hands that do something; as it was where `doing` is none of `gesture_names`.
 
@@ -306,6 +302,12 @@ def _is_free_of_beat(doing: str, seconds: float) -> bool:
     if move is None or move.lingers_at_share is not None:
         return False
     return not move.keys or (len(move.times(seconds)) > 1 and not any(key.steps for key in move.keys))
+
+
+def room_for(doing: str) -> tuple[float, bool]:
+    """How much free floor about a standing body it takes (metres at 1.70 m), and whether that is gone to."""
+    move = gesture_table().moves.get(doing, Move())
+    return move.room_m, move.goes_for_room
 
 
 def wave_of(rate: float | None, time: Array, phase: float = 0.0, burst: Burst | None = None) -> Array:

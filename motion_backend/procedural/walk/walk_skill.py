@@ -91,6 +91,10 @@ IN_POSE, BOTH_OUT = 0.4, 0.6
 """An arm is in a pose it is this near to (arm lengths); where not both are for so much of a way, that is no room."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
+TAKES_UP: Final = (0.6, 1.2)
+"""Seconds until what is used on the way is before the eyes, and until it has been looked at."""
+LOOKS_DOWN: Final = 0.5
+"""How far the head is bent for that (radians)."""
 LEGS = ("pelvis", "hips", "ankles", "feet", "toes")
 """The handles of who stands."""
 LEGS_DO = 1e-6
@@ -146,8 +150,10 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
         if body.stride is not None:
             halt(body, action)
         return
-    body.enter(PhaseKind.WALK)
     style = style_of(action)
+    if style.begins != ("hang", "hang") and body.stride is None and not near:
+        _take_up(body, style)
+    body.enter(PhaseKind.WALK)
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
@@ -165,6 +171,14 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
         for way in before:
             _stride(body, way, None, style)
     _stride(body, path, facing, style, None if near else onward)
+
+
+def _take_up(body: Body, style: Walk) -> None:
+    """Lift what is used on the way before one, and look at it for a moment."""
+    body.enter(PhaseKind.STAND)
+    wrists, elbows = arm_arrays(*style.begins)
+    looks = replace(body.pose, arms=wrists, elbows=elbows, head=bend(LOOKS_DOWN), reaching=np.zeros(2), pressing=np.zeros(2))
+    body.add(interpolate([0.0, *(one / style.bearing.tempo for one in TAKES_UP)], [body.pose, looks, looks], FPS))
 
 
 def asks_for_haste(action: Action) -> bool:
@@ -316,8 +330,9 @@ def stay(body: Body, part: Part) -> None:
     if style.doing in FLUNG:
         go(body, body.place, _where_legs_swing(body), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
-    room = room_for(style.doing) * body.skeleton.scale
-    if _free(body, body.place) < room:
+    room, goes = room_for(style.doing)
+    room *= body.skeleton.scale
+    if goes and _free(body, body.place) < room:
         go(body, *_open_floor(body, room), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
     spread = min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0
