@@ -22,6 +22,8 @@ _KEPT: Final = 8
 """Homes whose scenes are kept at hand."""
 UPPER: Final = 0.75
 """Of its height: where a piece is looked at."""
+SILL, EYES = 0.2, 1.5
+"""What opens lower than this is a door; how high the face is of who comes in (metres)."""
 UNSEEN: Final = frozenset({"rug", "ceiling_lamp"})
 """What nobody looks at."""
 
@@ -72,6 +74,13 @@ class Scene:
     def sights(self, room: int | None) -> Array:
         """What eyes rest on in a room: the upper half of its furniture, its windows and doors. (N, 3)."""
         return self._sights.get(room, np.zeros((0, 3)))
+
+    def doors(self, room: int | None) -> Array:
+        """Where one looks for who comes in: the doors of a room, as high as eyes. (N, 3)."""
+        openings = [opening for wall in self.home.walls for opening in wall.openings if opening.bottom < SILL]
+        middles = [np.mean(opening.segment, axis=0) for opening in openings]
+        found = [(x, EYES, z) for x, z in middles if self.home.room_at((float(x), float(z))) == room]
+        return np.array(found).reshape(-1, 3)
 
     @cached_property
     def _sights(self) -> dict[int | None, Array]:

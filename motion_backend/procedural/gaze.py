@@ -26,6 +26,8 @@ from scene_graphs.data_tables import read_table, table
 
 CONTACTS: Final = (PartKind.REACH, PartKind.SIT, PartKind.LIE)
 WALKS: Final = (PartKind.WALK, PartKind.TURN)
+WAITS: Final = re.compile(r"\bwaiting\b", re.IGNORECASE)
+"""Captions of who waits for somebody."""
 PRESSED: Final = 0.9
 """A hand that presses more than this is at its thing."""
 
@@ -48,6 +50,16 @@ class Touching:
 
     take_s: float
     leave_s: float
+
+
+@table
+class Waiting:
+    """Looks at the door, of who waits."""
+
+    from_share: tuple[float, ...]
+    """They begin at these shares of the time,"""
+    stay_share: tuple[float, ...]
+    """and last so long."""
 
 
 @table
@@ -77,6 +89,8 @@ class Gaze:
 
     told: str
     """The pattern of captions that say themselves where the head is."""
+    kept: str
+    """Of those of them in which it stays there until the end."""
     begin_s: float
     turn_max_rad: float
     lost_rad: float
@@ -92,6 +106,7 @@ class Gaze:
     arriving: Lead
     touching: Touching
     onward: Lead
+    waiting: Waiting
     glance: Glance
 
 
@@ -118,9 +133,24 @@ def gazing(pose: Pose, body: Body, part: Part) -> Pose:
     held = any(hold is not None and hold.part == "head" for hold in body.holds)
     # Who walks to a seat is not yet in the pose that its caption names.
     named = part.kind not in WALKS or part.action.skill is Skill.LOCO
-    if held or (named and re.search(row.told, part.action.caption.lower())):
+    told = named and re.search(row.told, part.action.caption.lower())
+    if held or (told and (part.kind is not PartKind.HOLD or re.search(row.kept, part.action.caption.lower()))):
         return pose
-    return turned_to(pose, list(_looks(pose, body, part, row)), body.posture, body.skeleton, row)
+    looks = _beside_what_is_told(pose, body, part, row) if told else _looks(pose, body, part, row)
+    return turned_to(pose, list(looks), body.posture, body.skeleton, row)
+
+
+def _beside_what_is_told(pose: Pose, body: Body, part: Part, row: Gaze) -> Iterator[Look]:
+    """What is looked at by who does what says where the head is: the door that is waited for, and what comes next."""
+    if WAITS.search(part.action.caption):
+        doors = body.scene.doors(body.scene.home.room_at(body.place))
+        near = _before(pose, doors, body, row.lost_rad)
+        if len(near):
+            door, at = near[np.argmin(np.linalg.norm(near - pose.pelvis[0], axis=1))], np.linspace(0.0, 1.0, len(pose))
+            turn = row.glance.turn_s * FPS / len(pose)
+            for start, stay in zip(row.waiting.from_share, row.waiting.stay_share, strict=True):
+                yield Look(door, smooth((at - start) / turn) * smooth((start + stay + turn - at) / turn))
+    yield from _at_what_comes(pose, body, part, row)
 
 
 def _looks(pose: Pose, body: Body, part: Part, row: Gaze) -> Iterator[Look]:
@@ -136,10 +166,15 @@ def _looks(pose: Pose, body: Body, part: Part, row: Gaze) -> Iterator[Look]:
         yield from _at_the_hand(pose, part, row)
     if part.kind is PartKind.HOLD:
         yield from _glances(pose, body, part, row)
-    if part.kind not in (PartKind.SIT, PartKind.LIE) and body.posture is not Posture.LYING:
-        target = _onward(body, row)
-        if target is not None:
-            yield Look(target, smooth((row.onward.lead_s - left) / row.onward.take_s))
+    yield from _at_what_comes(pose, body, part, row)
+
+
+def _at_what_comes(pose: Pose, body: Body, part: Part, row: Gaze) -> Iterator[Look]:
+    """In the end the eyes are on what is done after this."""
+    target = _onward(body, row)
+    if target is not None and part.kind not in (PartKind.SIT, PartKind.LIE) and body.posture is not Posture.LYING:
+        left = np.arange(len(pose))[::-1] / FPS
+        yield Look(target, smooth((row.onward.lead_s - left) / row.onward.take_s))
 
 
 def _at_the_hand(pose: Pose, part: Part, row: Gaze) -> Iterator[Look]:
@@ -185,13 +220,19 @@ def _glances(pose: Pose, body: Body, part: Part, row: Gaze) -> Iterator[Look]:
 
 def _in_sight(pose: Pose, body: Body, way: Glance) -> Array:
     """Things and windows of the room before the body. (N, 3)."""
-    sights = body.scene.sights(body.scene.home.room_at(body.place))
-    chest, place = chest_frame(pose.at(slice(0, 1)), body.skeleton)
-    if body.posture is Posture.LYING or not len(sights):
+    if body.posture is Posture.LYING:
         return np.zeros((0, 3))
-    local = rotations.rotate(rotations.inverse(chest), sights - place)
-    far, aside = np.hypot(local[:, 0], local[:, 2]), np.abs(np.arctan2(local[:, 0], local[:, 2]))
-    return np.asarray(sights[(far > way.near_m) & (far < way.far_m) & (aside < gaze_table().turn_max_rad)])
+    sights = body.scene.sights(body.scene.home.room_at(body.place))
+    seen = _before(pose, sights, body, gaze_table().turn_max_rad)
+    far = np.linalg.norm((seen - pose.pelvis[0])[:, [0, 2]], axis=1)
+    return np.asarray(seen[(far > way.near_m) & (far < way.far_m)])
+
+
+def _before(pose: Pose, points: Array, body: Body, most: float) -> Array:
+    """Those of N points that are no farther aside than this (radians) of where the chest looks at first. (M, 3)."""
+    chest, place = chest_frame(pose.at(slice(0, 1)), body.skeleton)
+    local = rotations.rotate(rotations.inverse(chest), points - place)
+    return np.asarray(points[np.abs(np.arctan2(local[:, 0], local[:, 2])) < most])
 
 
 def _aside(pose: Pose, body: Body, way: Glance) -> Array:

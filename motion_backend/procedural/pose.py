@@ -117,7 +117,7 @@ def _each(knots: Array, keys: list[Pose], at: Array) -> dict[str, Array]:
         turns = rotations.quat_to_rotvec(rotations.compose(rotations.inverse(middle), stacked[name]))
         stacked[name] = _unwrapped(turns, len(keys) // 2)
     ends = np.cumsum([values[0].size for values in stacked.values()])
-    flat = _spline(knots, np.concatenate([values.reshape(len(keys), -1) for values in stacked.values()], axis=1), at)
+    flat = spline(knots, np.concatenate([values.reshape(len(keys), -1) for values in stacked.values()], axis=1), at)
     found = {
         name: part.reshape(len(at), *values.shape[1:])
         for (name, values), part in zip(stacked.items(), np.split(flat, ends[:-1], axis=1), strict=True)
@@ -236,7 +236,7 @@ def _swing(start: Array, end: Array, share: Array) -> Array:
     return np.asarray(way * (lengths[0] + share * (lengths[1] - lengths[0])))
 
 
-def _spline(knots: Array, values: Array, at: Array) -> Array:
+def spline(knots: Array, values: Array, at: Array) -> Array:
     """Shape-keeping cubic through values (K, ...), flat at both ends."""
     if len(knots) == 2:
         share = smooth((at - knots[0]) / (knots[1] - knots[0]))

@@ -1,7 +1,7 @@
 """Styles as data: what an emotion, and the words of a caption, change of a way to walk, sit or lie.
 
-A sheet is a table with one section an emotion and one row a pattern of words. Its keys are the fields of the style's
-class with their units behind them (`lean_deg`); a row names only what it changes.
+A sheet is a table with one section an emotion and one row a pattern of words, which may count in some `moods` alone.
+Its keys are the fields of the style's class with their units behind them (`lean_deg`); a row names only what it changes.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
-from typing import Annotated, Any, get_args, get_type_hints
+from typing import Annotated, Any, NamedTuple, get_args, get_type_hints
 
 from motion_backend.motion import Emotion
 from scene_graphs.data_tables import read_table, table
@@ -39,20 +39,29 @@ Changes = Mapping[str, Any]
 """New values of some fields of a style, by field."""
 
 
+class Row(NamedTuple):
+    """What the words of a caption change."""
+
+    words: re.Pattern[str]
+    changes: Changes
+    moods: tuple[Emotion, ...]
+    """In these alone; in any where there are none."""
+
+
 @dataclass(frozen=True)
 class StyleSheet:
     """What emotions and captions change."""
 
     emotions: Mapping[Emotion, Changes]
-    captions: tuple[tuple[re.Pattern[str], Changes], ...]
+    captions: tuple[Row, ...]
     """What the words of a caption change, the particular after the general."""
 
-    def of_caption(self, caption: str) -> dict[str, Any]:
+    def of_caption(self, caption: str, mood: Emotion = Emotion.NEUTRAL) -> dict[str, Any]:
         """What all rows change whose words a caption has, the later over the earlier."""
         changes: dict[str, Any] = {}
-        for words, row in self.captions:
-            if words.search(caption.lower()):
-                changes |= row
+        for row in self.captions:
+            if row.words.search(caption.lower()) and (not row.moods or mood in row.moods):
+                changes |= row.changes
         return changes
 
 
@@ -63,12 +72,12 @@ def read_style_sheet(path: str, *styles: type) -> StyleSheet:
     names = {key: name for key, (name, _) in keys.items()}
     hints = {key: hint for key, (_, hint) in keys.items()}
     change: Any = _table_of("Change", {}, hints)
-    row: Any = _table_of("Row", {"words": str}, hints)
+    row: Any = _table_of("Row", {"words": str}, hints | {"moods": tuple[Emotion, ...]})
     sheet = _table_of("Sheet", {}, {"emotions": dict[Emotion, change], "captions": tuple[row, ...]})
     read: Any = read_table("motion_backend", f"styles/{path}", sheet)
     return StyleSheet(
         {emotion: _given(one, names) for emotion, one in (read.emotions or {}).items()},
-        tuple((re.compile(one.words), _given(one, names)) for one in read.captions or ()),
+        tuple(Row(re.compile(one.words), _given(one, names), one.moods or ()) for one in read.captions or ()),
     )
 
 

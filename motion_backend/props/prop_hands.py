@@ -16,6 +16,7 @@ from motion_backend.skeleton import ARM_LENGTH, INDEX
 PALM: Final = (0.075, 0.02)
 """From the wrist to the middle of the palm, along the fingers and out of the hand (metres at 1.70 m)."""
 EYES, MOUTH, JAW = (0.0, 0.085, 0.09), (0.0, 0.015, 0.10), (0.0, 0.85, -0.53)
+SKULL: Final = (0.0, 0.065, -0.01)
 """In the head's frame: places (metres at 1.70 m), and the way from the chin past the ear."""
 LIPS: Final = (0.0, 0.012, 0.112)
 """Where a rim is that is drunk from, in the head's frame (metres at 1.70 m)."""
@@ -139,7 +140,7 @@ class Hands:
             case "inward":
                 found = rotations.rotate(self.head, -LEFT if grip.hand == "left" else LEFT)
             case _:
-                found = self._in_head({"face": EYES, "mouth": MOUTH}[name]) - origin
+                found = self._in_head({"face": EYES, "mouth": MOUTH, "scalp": SKULL}[name]) - origin
         return rotations.normalize(found)
 
     def _in_head(self, place: tuple[float, float, float]) -> Array:

@@ -14,10 +14,10 @@ from scene_graphs.data_tables import read_table, require_known, require_unlike, 
 Vector = tuple[float, float, float]
 Direction = Literal[
     "up", "down", "ahead", "left", "trunk", "across", "fingers", "palm", "thumb",
-    "face", "mouth", "jaw", "crown", "nose", "inward",
+    "face", "mouth", "scalp", "jaw", "crown", "nose", "inward",
 ]  # fmt: skip
 """Of the world (up, down), of the chest (ahead, left, and up the trunk), from the right to the left hand (across), of
-the hand, or of both between them (fingers, palm, thumb), from there to the eyes and to the mouth, of the head: up
+the hand, or of both between them (fingers, palm, thumb), from there to the eyes, to the mouth and to the middle of the skull (scalp), of the head: up
 (crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward)."""
 
 

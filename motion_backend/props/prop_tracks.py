@@ -82,7 +82,7 @@ def _in_hand(hands: Hands, moments: Sequence[Moment], stays: NDArray[np.int64]) 
                 continue
             if grip.still:
                 found += _lying(hands, grip, when, stays)
-            elif grip.hand == "both":
+            elif grip.hand == "both" and not grip.stands:
                 found += _between(hands, grip, when)
             else:
                 kept = _spanned(spans, len(when)) & ~np.any([np.zeros_like(when), *busy], axis=0)
@@ -164,10 +164,12 @@ def _spanned(spans: Sequence[tuple[int, int]], frames: int) -> Flags:
 
 
 def _one_handed(hands: Hands, grip: Grip, there: Flags, kept: Flags) -> Iterator[PropTrack]:
-    """What one hand holds in the frames in which it is `kept`: as its caption has it where it is `there`, else
-    hanging."""
+    """What one hand holds, or what stands on the floor, in the frames in which it is `kept`: as its caption has it
+    where it is `there`, else hanging."""
     shape = next((row for row in prop_table().called if row.shape == grip.prop), None)
     hanging = grip if shape is None else in_hand(shape, grip.hand)
+    if grip.stands:  # it stands beside who does not use it
+        hanging = replace(grip, hand="right", along="up", front="ahead")
     # It is turned once the hand is nearly where it holds it: on the way up the two ways are too far apart.
     late = round(LIFTS * hands.fps)
     turned = np.array([there[max(at - late, 0) : at + late + 1].all() for at in range(len(there))])

@@ -55,7 +55,8 @@ def _shares() -> dict[tuple[Skill, str], dict[Emotion, float]]:
 
 @cache
 def _mostly(skill: Skill, mood: Emotion) -> tuple[str, ...]:
-    """Captions of a skill that show a mood, no deed and no other mood, in the order of the alphabet."""
+    """Captions of a skill that show a mood, no deed but its usual one and no other mood, in the order of the alphabet;
+    hands behind the head are at ease in any."""
     rows = [row for row in deed_table().deed if row.rests or row.skill is Skill.LOCO or row.at == ("floor",)]
     deeds = {caption for row in rows for caption in (*row.captions, *row.lying, *row.seated)}
     shares = _shares()
@@ -65,8 +66,8 @@ def _mostly(skill: Skill, mood: Emotion) -> tuple[str, ...]:
             caption
             for (of, caption), moods in shares.items()
             if of is skill
-            and caption not in deeds
-            and not re.search("phone|to the front|hips|sidestep", caption)
+            and (caption not in deeds or (skill is Skill.SITDOWN and caption == usual(skill, mood)))
+            and not re.search("phone|to the front|hips|sidestep|hands supporting head", caption)
             and moods.get(mood, 0.0) >= _MIN_SHARE
         )
     )

@@ -121,11 +121,11 @@ def _let_down(
 
 
 def _own_fold(fold: Fold, own: OwnWay) -> Fold:
-    """The leg as it is bent this time; knees that are drawn up are as far up as they go."""
+    """The leg as it is bent this time; knees that are drawn up are no farther up than the table has them."""
+    hip, knee = own.side_hip, own.side_knee
     if fold.hip_deg > DRAWN_UP:
-        return fold
-    knee = max(fold.knee_deg + own.side_knee, MIN_KNEE)
-    return replace(fold, hip_deg=fold.hip_deg + own.side_hip, knee_deg=knee)
+        hip, knee = -abs(hip), -abs(knee)
+    return replace(fold, hip_deg=fold.hip_deg + hip, knee_deg=max(fold.knee_deg + knee, MIN_KNEE))
 
 
 def _folded(fold: Fold, room: float) -> tuple[LyingLeg, Array]:

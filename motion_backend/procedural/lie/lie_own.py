@@ -49,6 +49,8 @@ class OwnWay:
     askew: float = 0.0
     """Of the body to the left, seen from above (radians)."""
     curve: float = 0.0
+    twist: float = 0.0
+    """Of the trunk on the back, to the left."""
     head_turn: float = 0.0
     head_tilt: float = 0.0
     ankle_aside: Array = field(default_factory=_none)
@@ -61,6 +63,8 @@ class OwnWay:
     side_knee: float = 0.0
     hand_along: Array = field(default_factory=_none)
     hand_across: Array = field(default_factory=_none)
+    elbow_up: Array = field(default_factory=_none)
+    """Of an elbow's direction, towards the head."""
 
 
 NOBODY: Final = OwnWay()

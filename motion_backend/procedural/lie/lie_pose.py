@@ -180,7 +180,7 @@ def lying(start: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LiePose
 
 def _on_the_back(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: LiePose) -> Pose:
     lift = float(np.arctan2(bed.pillow, TO_HEAD))
-    spine = bend(keys.back.spine_lift_share * lift, side=style.own.curve)
+    spine = bend(keys.back.spine_lift_share * lift, side=style.own.curve, turn=style.own.twist)
     hips = _askew(bed.hips("back"), bed, style.own)
     pose = replace(pose, pelvis=bed.pelvis, hips=hips, spine=spine, head=bend(0.0))
     pose = on_the_back(pose, style.legs, skeleton, keys.leg, style.own)
@@ -190,6 +190,7 @@ def _on_the_back(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: L
     else:
         pose = shortened(pose, bed.end, skeleton, keys.over_end, keys.before_end)
     if style.propped:
+        pose = replace(pose, head=bend(0.0, turn=style.own.head_turn, side=style.own.head_tilt))
         return on_both_elbows(pose, bed.surface, skeleton, keys.propped)
     heights = head_middle(replace(pose, head=np.stack([bend(float(nod)) for nod in NODS])), skeleton)[:, 1]
     left, right = (_hand(style, bed, index, skeleton.scale, keys.back_hand) for index in (0, 1))
@@ -214,9 +215,11 @@ def _moved(rest: RestingHand, own: OwnWay, index: int) -> RestingHand:
     """The hand where it lies this time, over the same surface."""
     out, up, ahead = rest.wrist_m
     # Under a head and on a face there is no more room, and a trunk falls off to its sides.
-    size = 0.5 if rest.with_head or (out < OVER_TRUNK and ahead > 0) else 1.0
+    size = 0.4 if rest.with_head or (out < OVER_TRUNK and ahead > 0) else 1.0
     across, along = size * float(own.hand_across[index]), size * float(own.hand_along[index])
-    return replace(rest, wrist_m=(out + across, up + along, ahead))
+    aside, towards_head, forwards = rest.elbow_direction
+    elbow = (aside, towards_head + float(own.elbow_up[index]), forwards)
+    return replace(rest, wrist_m=(out + across, up + along, ahead), elbow_direction=elbow)
 
 
 def _hand(style: Lying, bed: Bed, index: int, scale: float, rows: tuple[RestingHand, ...]) -> RestingHand:

@@ -31,7 +31,7 @@ RAISES: Final = np.linspace(0.2, 0.75, 56)
 def on_both_elbows(pose: Pose, height: float, skeleton: Skeleton, row: Propped) -> Pose:
     """On the back with the trunk raised on the elbows; `height` is that of the mattress in the world."""
     pose = _sat_up(pose, height, skeleton, row)
-    return propped(replace(pose, head=bend(row.head_pitch_rad)), height, skeleton, row)
+    return propped(replace(pose, head=pose.head + bend(row.head_pitch_rad)), height, skeleton, row)
 
 
 def propped(pose: Pose, height: float, skeleton: Skeleton, row: Propped) -> Pose:
@@ -63,8 +63,9 @@ def _sat_up(pose: Pose, height: float, skeleton: Skeleton, row: Propped) -> Pose
     """The trunk raised until an upper arm stands upright under its shoulder; the pelvis tips back under it."""
     back = rotations.rotvec_to_quat(np.array([row.hips_back_rad, 0.0, 0.0]))
     pose = replace(pose, hips=rotations.compose(pose.hips, back))
-    tries = replace(pose.repeat(len(BENDS)), spine=np.stack([bend(float(forward)) for forward in BENDS]))
-    heights = shoulders(tries, skeleton)[:, 0, 1]
+    aside = pose.spine * [0.0, 1.0, 1.0]
+    tries = replace(pose.repeat(len(BENDS)), spine=aside + np.stack([bend(float(forward)) for forward in BENDS]))
+    heights = shoulders(tries, skeleton)[:, :, 1].mean(axis=1)
     best = int(np.argmin(np.abs(heights - height - row.shoulder_height_m * skeleton.scale)))
     return replace(pose, spine=tries.spine[best])
 
@@ -74,12 +75,13 @@ def head_in_hand(pose: Pose, below: int, height: float, skeleton: Skeleton, row:
 
     The trunk is bent up until the elbow is low enough under the hand.
     """
+    pitch = row.spine_pitch_rad + float(pose.spine[0])
     down = SIDES[below][1]
     head = bend(row.head_pitch_rad, row.head_side_rad * down, row.head_turn_rad * down)
     up = rotations.rotvec_to_quat(np.array([0.0, 0.0, row.hips_up_rad * down]))
     tries = replace(
         replace(pose, head=head, hips=rotations.compose(pose.hips, up)).repeat(len(RAISES)),
-        spine=np.stack([bend(row.spine_pitch_rad, float(side) * down, row.spine_turn_rad * down) for side in RAISES]),
+        spine=np.stack([bend(pitch, float(side) * down, row.spine_turn_rad * down) for side in RAISES]),
         head=np.repeat(
             bend(row.head_pitch_rad, row.head_side_rad * down, row.head_turn_rad * down)[None], len(RAISES), 0
         ),

@@ -33,7 +33,7 @@ class Lying:
 
 def lie_style(emotion: Emotion, caption: str) -> Lying:
     """The way of lying a caption asks for."""
-    changes = read_style_sheet("lie.toml", Lying).of_caption(caption)
+    changes = read_style_sheet("lie.toml", Lying).of_caption(caption, emotion)
     return Lying(bearing=bearing_of(emotion, caption), **changes)
 
 

@@ -58,10 +58,12 @@ WAYS: Final[dict[str, tuple[str, str]]] = {
     "drawn": ("drawn", "drawn"),
 }
 """What the left and the right leg do in each way of sitting: rows of the table."""
-FREE_TO_STAND: Final = ("rest", "together", "open", "slouched")
+FREE_TO_STAND: Final = ("rest", "together", "open", "slouched", "ahead")
 """Rows of legs that may as well stand a little elsewhere."""
-FREE_ASIDE: Final = ("straight", "drawn", "ahead")
+FREE_ASIDE: Final = ("straight", "drawn")
 """Rows of legs that may be farther out or in."""
+CROSSED: Final = ("over", "under", "folded_near", "folded_far")
+"""Rows of legs that go to a side only both together."""
 APART: Final = 0.08
 """An ankle nearer than this to the middle is to stand beside the other one (metres at 1.70 m)."""
 BEFORE_SEAT, LEAST_OUTWARDS = 0.065, 0.045
@@ -117,6 +119,8 @@ def seated_legs(
             leg = _elsewhere(leg, own, index, seat, skeleton.scale, ahead)
         elif way in FREE_ASIDE:
             leg = _aside(leg, own, index, skeleton.scale)
+        elif way in CROSSED:
+            leg = leg._replace(outwards=leg.outwards + (1 - 2 * index) * skeleton.scale * float(own.foot_out[0]))
         if leg.outwards > room[index].aside:
             share = room[index].aside / leg.outwards
             leg = leg._replace(outwards=room[index].aside, knee_out=share * leg.knee_out)

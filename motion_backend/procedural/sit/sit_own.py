@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from motion_backend.procedural.held_poses import bend
 from motion_backend.procedural.own_way import drawn_way
 from motion_backend.procedural.sit.sit_keys import SitKeys
 from motion_backend.procedural.touch.hand_rests import Hold
@@ -15,6 +16,8 @@ from motion_backend.rotations import Array
 
 ON_TOP, TO_KNEE = 0.02, -0.02
 """How far a palm is from a thigh's middle line that lies on top of it, and goes towards the knee (metres)."""
+ON_ARMS: Final = 0.5
+"""Arms on a table or the thighs leave so large a share of a trunk's turn and bend aside."""
 CHARACTER: Final = 0x517
 """Sets what is drawn for a character apart from what else is drawn from its seed."""
 
@@ -46,14 +49,24 @@ class OwnSeat:
     palm_along: Array = field(default_factory=_pair)
     palm_out: Array = field(default_factory=_pair)
     elbow_out: Array = field(default_factory=_pair)
+    elbow_up: Array = field(default_factory=_pair)
+    """Of an elbow's direction."""
 
     def of_hand(self, hold: Hold | None, index: int) -> Hold | None:
-        """A hold that is a little elsewhere, where it is on top of a thigh."""
-        if hold is None or hold.part != "left_hip" or abs(hold.palm[0]) > ON_TOP:
+        """A hold with its elbow a little elsewhere, and the palm too where that is on top of a thigh."""
+        if hold is None:
             return hold
-        (x, y, z), (out, up, ahead) = hold.palm, hold.elbow
+        out, up, ahead = hold.elbow
+        elbow = (out * (1 + float(self.elbow_out[index])), up + float(self.elbow_up[index]), ahead)
+        if hold.part != "left_hip" or abs(hold.palm[0]) > ON_TOP:
+            return replace(hold, elbow=elbow)
+        x, y, z = hold.palm
         palm = (x + float(self.palm_out[index]), y + max(float(self.palm_along[index]), TO_KNEE), z)
-        return replace(hold, palm=palm, elbow=(out * (1 + float(self.elbow_out[index])), up, ahead))
+        return replace(hold, palm=palm, elbow=elbow)
+
+    def of_trunk(self, on_arms: bool) -> Array:
+        """How it is turned and bent aside: less where arms lie on something before it. (3,)."""
+        return (ON_ARMS if on_arms else 1.0) * bend(0.0, self.side, self.turn)
 
 
 NOBODY: Final = OwnSeat()

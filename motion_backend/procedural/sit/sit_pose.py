@@ -60,9 +60,9 @@ class Place:
 
 def holds_of(style: Seated, place: Place, skeleton: Skeleton, keys: SitPose) -> Holds:
     """What the hands of a way of sitting lie on here; a surface that is not there is replaced by the thighs."""
+    own = NOBODY if style.on_elbows else style.own
     left, right = (
-        style.own.of_hand(_hold(name, index, place, skeleton.scale, keys), index)
-        for index, name in enumerate(style.arms)
+        own.of_hand(_hold(name, index, place, skeleton.scale, keys), index) for index, name in enumerate(style.arms)
     )
     return left, right
 
@@ -164,6 +164,7 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
     pose = replace(
         start,
         pelvis=seat.pelvis.copy(),
+        spine=style.own.of_trunk(style.on_elbows or bool(BUSY_ON_TABLE & set(style.arms))),
         head=_head(style),
         ankles=legs.ankles,
         feet=legs.feet,
@@ -185,9 +186,7 @@ def seated(start: Pose, place: Place, style: Seated, skeleton: Skeleton, keys: S
         leans = LEANS if _on_table(holds) else LEANS[LEANS >= LEANT_FORWARD]
         return _on_elbows(_leaning(pose, seat, -leans, skeleton, keys.trunk), place, holds, skeleton), holds
     back = np.array([_recline(style, place, keys.trunk)])
-    leaned = _leaning(pose, seat, back, skeleton, keys.trunk).at(0)
-    leaned = replace(leaned, spine=leaned.spine + bend(0.0, style.own.side, style.own.turn))
-    return at_rest(leaned, holds, skeleton), holds
+    return at_rest(_leaning(pose, seat, back, skeleton, keys.trunk).at(0), holds, skeleton), holds
 
 
 SURFACES = (
@@ -267,6 +266,8 @@ def _on_the_floor(style: Seated) -> Seated:
     return replace(style, arms=(left, right), legs=legs, recline=recline, on_elbows=style.on_elbows and not shins)
 
 
+PROPPED = 0.6
+"""Arms that prop a trunk up leave so large a share of what its lean has of its own."""
 LEANS_BACK, LEANT = 15.0, 0.7
 """Who leans back by so much (degrees) leans back by such a share of it at least, or it is said."""
 
@@ -286,7 +287,8 @@ def _recline(style: Seated, place: Place, trunk: Trunk) -> float:
     """Backward lean of the trunk, as far as there is a back to lean against, or arms (radians)."""
     seat = place.seat
     propped = {"behind", "propped", "beside"} & set(style.arms)
-    own = style.own.recline if style.recline and not propped else style.own.upright_recline
+    own = style.own.recline if style.recline else style.own.upright_recline
+    own *= PROPPED if propped else 1.0
     wanted, most = np.radians(style.recline + own), np.radians(trunk.max_back_deg)
     met = np.pi if np.isinf(seat.back) else np.arcsin(np.clip((seat.back - BEHIND_PELVIS) / BACKREST, 0.0, MAX_SINE))
     if not propped and style.recline >= LEANS_BACK and met < most:
@@ -302,7 +304,7 @@ def _leaning(pose: Pose, seat: Seat, back: Array, skeleton: Skeleton, trunk: Tru
     many = pose.repeat(len(back))
     hips = upright(seat.yaw, -np.where(back > 0, trunk.hips_back_share, trunk.hips_forward_share) * back)
     spine_shares = np.where(back > 0, trunk.spine_back_share, trunk.spine_forward_share)
-    spine = np.stack([bend(-share * lean) for share, lean in zip(spine_shares, back, strict=True)])
+    spine = many.spine + np.stack([bend(-share * lean) for share, lean in zip(spine_shares, back, strict=True)])
     head = many.head + np.stack([bend(trunk.head_ahead_share * max(lean, 0.0)) for lean in back])
     leaned = replace(many, hips=hips, spine=spine, head=head)
     return folded_within(leaned, skeleton) if seat.is_low(skeleton.scale) else leaned

@@ -87,7 +87,8 @@ def stay_seated(body: Body, part: Part) -> None:
     style = sit_style(part.action.emotion, part.action.caption)
     held = idle(body.pose, part.hold, style.bearing.restless, body.rng, FPS)
     laid = follow(held, body.pose, body.holds, body.skeleton)
-    body.add(gesture(sliding(laid, body.holds, body.rng, max(style.bearing.restless, LEAST)), style.doing))
+    slid = sliding(laid, body.holds, body.rng, max(style.bearing.restless, LEAST))
+    body.add(gesture(slid, style.doing, rng=body.rng))
 
 
 def leave_seat(body: Body, seat: Seat, bearing: Bearing) -> None:

@@ -66,7 +66,7 @@ HANGING = 0.8
 
 def sit_style(emotion: Emotion, caption: str) -> Seated:
     """The way of sitting a caption asks for, in that emotion."""
-    said = read_style_sheet("sit.toml", Bearing, Seated).of_caption(caption)
+    said = read_style_sheet("sit.toml", Bearing, Seated).of_caption(caption, emotion)
     bearing, changes = carried(bearing_of(emotion, caption), said, Seated)
     slump = {"recline": AT_REST - SLUMP * max(bearing.lean, 0.0), "head": HANGING * max(bearing.head, 0.0)}
     return Seated(bearing=bearing, manner=manners()[emotion], **(slump | changes))

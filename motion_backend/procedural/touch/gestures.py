@@ -15,7 +15,8 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays
-from motion_backend.procedural.pose import ROTATIONS, Pose, interpolate, smooth
+from motion_backend.procedural.own_time import own_time
+from motion_backend.procedural.pose import ROTATIONS, Pose, interpolate, smooth, spline
 from motion_backend.procedural.touch.bursts import Burst
 from motion_backend.procedural.touch.kneel import feet_behind, foot_back, foot_in_the_air
 from motion_backend.procedural.touch.touch_keys import KneelTable
@@ -36,6 +37,8 @@ PALMS: Final = {
     "together": rotations.basis_to_quat(_UPRIGHT, _ASIDE, rotations.cross(_UPRIGHT, _ASIDE)),
 }
 """Both hands against where the body faces: palms up, fingers ahead and outwards; or palm to palm, fingers up."""
+ARMS_CATCH_UP: Final = 0.5
+"""Seconds in which arms fall behind, and catch up in the end."""
 BALL: Final = np.array([0.0, -0.035, 0.12])
 """The ball of a foot from its ankle (metres at 1.70 m)."""
 
@@ -76,18 +79,28 @@ class HandWave:
 class TrunkWave:
     """One wave that trunk or head bends in."""
 
-    part: Literal["spine", "head"]
+    part: Literal["spine", "head", "hips"]
+    """Hips take the pelvis with them, and the trunk on it."""
     rate_hz: float | None = None
     forward_rad: float = 0.0
     turn_rad: float = 0.0
     side_rad: float = 0.0
+    up_m: float = 0.0
+    """Of hips, at 1.70 m."""
     phase_share: float = 0.0
     burst: Burst | None = None
 
-    def bends(self, time: Array) -> Array:
-        """At times (T,): forwards, to the left and to the side. (T, 3)."""
-        bend = [self.forward_rad, self.turn_rad, self.side_rad]
-        return wave_of(self.rate_hz, time, self.phase_share, self.burst)[:, None] * bend
+    def bent(self, pose: Pose, time: Array, ease: Array) -> Pose:
+        """T frames with it at times (T,), as far as `ease` (T,) has it."""
+        size = ease * wave_of(self.rate_hz, time, self.phase_share, self.burst)
+        bends = size[:, None] * [self.forward_rad, self.turn_rad, self.side_rad]
+        if self.part != "hips":
+            part = getattr(pose, self.part) + bends
+            return replace(pose, spine=part) if self.part == "spine" else replace(pose, head=part)
+        up = size[:, None] * [0.0, self.up_m, 0.0] * pose.pelvis[:1, 1:2] / STANDS
+        return replace(
+            pose, pelvis=pose.pelvis + up, hips=rotations.compose(pose.hips, rotations.rotvec_to_quat(bends))
+        )
 
 
 @table
@@ -103,12 +116,20 @@ class MoveKey:
     spine_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Forwards, to the left, to the side."""
     head_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    hips_forward_rad: float = 0.0
+    hips_rad: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Forwards, to the left, to the side: the left side up."""
     pelvis_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """To the left, up, ahead, at 1.70 m."""
+    left_foot_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
     right_foot_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where they are against where they stood; they stand there where they are not off the floor."""
+    left_foot_down_rad: float = 0.0
     right_foot_down_rad: float = 0.0
     """How far its tip points down."""
+    turn_rad: float = 0.0
+    """How far to the left the body has turned by then about where it stood,"""
+    feet_turn_rad: tuple[float, float] = (0.0, 0.0)
+    """and its left and its right foot."""
     flight_m: float = 0.0
     """How high the balls of both feet are off the floor; the pelvis is as high as `pelvis_m` says."""
     heels_up_rad: float = 0.0
@@ -116,20 +137,27 @@ class MoveKey:
     legs: tuple[Leg, Leg] = ("stands", "stands")
     """What the left and the right do: stand, are on the way back and off the floor, or kneel on toes and knee."""
 
-    def pose(self, held: Pose) -> Pose:
-        """That key of a single held pose."""
-        held = self._knelt(held)
+    @property
+    def steps(self) -> bool:
+        """Whether a foot goes anywhere."""
+        return any((*self.left_foot_m, *self.right_foot_m, self.flight_m)) or self.legs != ("stands", "stands")
+
+    def pose(self, held: Pose, spread: float = 1.0) -> Pose:
+        """That key of a single held pose; level ways of feet and pelvis are such a share of what it says."""
+        held, wide = self._knelt(held), np.array([spread, 1.0, spread])
         heading, scale = rotations.yaw_to_quat(yaw_of(held.hips)), float(held.pelvis[1]) / STANDS
         named = np.array([bool(name) for name in self.arms])
         wrists, poles = arm_arrays(*(name or "hang" for name in self.arms))
-        off = np.array([[0.0, self.flight_m, 0.0], np.add(self.right_foot_m, [0.0, self.flight_m, 0.0])])
-        down = rotations.axis_to_quat("x", self.heels_up_rad + np.array([0.0, self.right_foot_down_rad]))
+        off = wide * np.array([self.left_foot_m, self.right_foot_m]) + [0.0, self.flight_m, 0.0]
+        down = rotations.axis_to_quat(
+            "x", self.heels_up_rad + np.array([self.left_foot_down_rad, self.right_foot_down_rad])
+        )
         tipped = rotations.axis_to_quat("x", np.asarray(self.heels_up_rad))
         rolled = BALL - rotations.rotate(tipped, BALL)
         return replace(
             held,
-            pelvis=held.pelvis + scale * rotations.rotate(heading, np.array(self.pelvis_m)),
-            hips=rotations.compose(held.hips, rotations.axis_to_quat("x", np.array(self.hips_forward_rad))),
+            pelvis=held.pelvis + scale * rotations.rotate(heading, wide * self.pelvis_m),
+            hips=rotations.compose(held.hips, rotations.rotvec_to_quat(np.array(self.hips_rad))),
             spine=held.spine + self.spine_rad,
             head=held.head + self.head_rad,
             ankles=held.ankles + scale * (rotations.rotate(heading, off) + rotations.rotate(held.feet, rolled)),
@@ -141,7 +169,7 @@ class MoveKey:
             reaching=np.where(named, 0.0, held.reaching),
             palms=rotations.compose(heading, PALMS[self.palms]) if self.palms else held.palms,
             pressing=np.where(named, float(bool(self.palms)), held.pressing),
-            planted=np.where(off.any(axis=1), 0.0, held.planted),
+            planted=np.where(off[:, 1] > 0.0, 0.0, held.planted),
         )
 
     def _knelt(self, held: Pose) -> Pose:
@@ -166,6 +194,26 @@ class Move:
     every_s: float = 1.0
     """About how long it takes to go through the keys and back to the pose that is held."""
     keys: tuple[MoveKey, ...] = ()
+    lingers_at_share: float | None = None
+    """From the key at this share on there is time left, where there is more of it: what comes before keeps its pace.
+    Without one all of it is slower."""
+    arms_late_s: float = 0.0
+    """So much later than hips and feet arms come to each key."""
+    room_m: float = 0.0
+    """How far about the body the floor is to be free, beyond what standing there needs (at 1.70 m)."""
+    goes_for_room: bool = False
+    """Whether who has not so much of it goes to where there is more; else all is done nearer to the spot."""
+
+    def times(self, seconds: float) -> Array:
+        """When the keys are reached in so many seconds, first of them the pose that is held. (turns, 1 + keys)."""
+        paced = self.lingers_at_share is not None
+        turns = max(int(seconds / self.every_s) if paced else round(seconds / self.every_s), 1)
+        once = min(self.every_s, seconds) if paced else seconds / turns
+        shares = np.array([0.0, *(key.at_share for key in self.keys)])
+        found = once * (np.arange(turns)[:, None] + shares)
+        if self.lingers_at_share is not None:
+            found[-1, shares > self.lingers_at_share] += seconds - turns * once
+        return found
 
 
 @table
@@ -232,14 +280,34 @@ def gesture_table() -> Gestures:
     return rows
 
 
-def gesture(held: Pose, doing: str) -> Pose:
-    """A held pose of T frames with hands that do something; as it was where `doing` is none of `gesture_names`."""
+def gesture(held: Pose, doing: str, spread: float = 1.0, rng: np.random.Generator | None = None) -> Pose:
+    """A held pose of T frames with hands that do something; as it was where `doing` is none of `gesture_names`.
+
+    Feet and pelvis go such a share of their ways over the floor. By chance what is done again and again, without a
+    beat, has a tempo of its own.
+    """
     if doing not in gesture_names():
         return held
     time = np.arange(1, len(held) + 1) / FPS
     seconds = gesture_table().ease_s
     ease = smooth(time / seconds) * smooth((time[-1] - time) / seconds)
-    return _OWN.get(doing, partial(_move, doing=doing))(held, time, ease)
+    if rng is not None and _is_free_of_beat(doing, float(time[-1])):
+        time = own_time(time, rng)
+    return _OWN.get(doing, partial(_move, doing=doing, spread=spread))(held, time, ease)
+
+
+def _is_free_of_beat(doing: str, seconds: float) -> bool:
+    """Whether it is done again and again in so many seconds, neither to a beat nor with steps."""
+    move = gesture_table().moves.get(doing)
+    if move is None or move.lingers_at_share is not None:
+        return False
+    return not move.keys or (len(move.times(seconds)) > 1 and not any(key.steps for key in move.keys))
+
+
+def room_for(doing: str) -> tuple[float, bool]:
+    """How much free floor about a standing body it takes (metres at 1.70 m), and whether that is gone to."""
+    move = gesture_table().moves.get(doing, Move())
+    return move.room_m, move.goes_for_room
 
 
 def wave_of(rate: float | None, time: Array, phase: float = 0.0, burst: Burst | None = None) -> Array:
@@ -255,35 +323,75 @@ def _moved(held: Pose, left: Array, right: Array, ease: Array) -> Pose:
     return replace(held, arms=held.arms + offsets, reach=held.reach + ARM_LENGTH * rotations.rotate(heading, offsets))
 
 
-def _move(held: Pose, time: Array, ease: Array, doing: str) -> Pose:
+def _move(held: Pose, time: Array, ease: Array, doing: str, spread: float) -> Pose:
     """The key poses and the waves of that name."""
     rows = gesture_table().moves[doing]
-    held = _through_keys(held, time, rows) if rows.keys else held
+    held = _through_keys(held, time, rows, spread) if rows.keys else held
     offsets, raised = np.zeros((2, len(time), 3)), np.where(held.arms[:, :, 1] > 0, 1.0, 0.0)
     for row in rows.hands:
         for index in (0, 1):
             offsets[index] += row.of_hand(index, raised[:, index]) * row.offsets(time)
     moved = _moved(held, offsets[0], offsets[1], ease)
     for bend in rows.trunk:
-        part = getattr(moved, bend.part) + ease[:, None] * bend.bends(time)
-        moved = replace(moved, spine=part) if bend.part == "spine" else replace(moved, head=part)
+        moved = bend.bent(moved, time, ease)
     return moved
 
 
-def _through_keys(held: Pose, time: Array, rows: Move) -> Pose:
+def _through_keys(held: Pose, time: Array, rows: Move, spread: float) -> Pose:
     """T frames of a held pose that go through the keys and back, as often as there is time for."""
-    base, times = held.at(0), max(round(float(time[-1]) / rows.every_s), 1)
-    once = [(0.0, base), *((key.at_share, key.pose(base)) for key in rows.keys)]
-    every = [(turn + share, pose) for turn in range(times) for share, pose in once] + [(float(times), base)]
-    way = interpolate([share * float(time[-1]) / times for share, _ in every], [pose for _, pose in every], FPS)
+    base, at = held.at(0), rows.times(float(time[-1]))
+    keys = [MoveKey(at_share=0.0), *rows.keys]
+    poses, turned = (
+        [key.pose(base, spread) for key in keys],
+        np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys]),
+    )
+    clock = np.arange(1, len(held) + 1) / FPS
+    knots = np.interp(np.append(at, time[-1]), [0.0, *time], [0.0, *clock])
+    way = interpolate(knots.tolist(), [*poses * len(at), base], FPS)
+    way = _arms_later(way, rows.arms_late_s * FPS)
     added = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "elbows", "reaching", "pressing")
     moved = {name: getattr(held, name) + getattr(way, name) - getattr(base, name) for name in added}
-    turned = {
+    turns = {
         name: rotations.compose(getattr(held, name), rotations.compose(rotations.inverse(start), getattr(way, name)))
         for name in ROTATIONS
         for start in [getattr(base, name)]
     }
-    return replace(held, planted=np.minimum(held.planted, way.planted), **moved, **turned)
+    done = replace(held, planted=np.minimum(held.planted, way.planted), **moved, **turns)
+    if not turned.any():
+        return done
+    # Who turns about in it goes on from there in the next turn.
+    by = np.concatenate([*(turned + turn * turned[-1] for turn in range(len(at))), len(at) * turned[-1:]])
+    return _turned(done, base.ankles.mean(axis=0), spline(knots, by, clock))
+
+
+def _arms_later(pose: Pose, frames: float) -> Pose:
+    """T frames whose arms are so many frames behind, but not at either end."""
+    if not frames:
+        return pose
+    place, ends = np.arange(len(pose)), np.minimum(np.arange(len(pose)), np.arange(len(pose))[::-1])
+    then = place - frames * smooth(ends / (ARMS_CATCH_UP * FPS))
+    before = np.clip(np.floor(then).astype(int), 0, len(pose) - 2)
+    share = (then - before)[:, None, None]
+    late = {name: one[before] + share * (one[before + 1] - one[before]) for name in ("arms", "elbows")
+            for one in [getattr(pose, name)]}  # fmt: skip
+    return replace(pose, **late)
+
+
+def _turned(pose: Pose, about: Array, by: Array) -> Pose:
+    """T frames turned to the left about a place (3,): the body, the left and the right foot by angles (T, 3)."""
+    turns = rotations.yaw_to_quat(by)
+    body, feet = turns[:, 0], turns[:, 1:]
+    knees = rotations.yaw_to_quat(by.mean(axis=1))[:, None]
+    return replace(
+        pose,
+        pelvis=about + rotations.rotate(body, pose.pelvis - about),
+        hips=rotations.compose(body, pose.hips),
+        knees=rotations.rotate(knees, pose.knees),
+        ankles=about + rotations.rotate(feet, pose.ankles - about),
+        feet=rotations.compose(feet, pose.feet),
+        reach=about + rotations.rotate(body[:, None], pose.reach - about),
+        palms=rotations.compose(body[:, None], pose.palms),
+    )
 
 
 def _write(held: Pose, time: Array, ease: Array) -> Pose:

@@ -128,6 +128,9 @@ class Gaze:
     ahead_frames: int
     """It turns to where the body will head so much later."""
     turn_max_rad: float
+    chest_ahead_frames: int
+    """The chest follows it so long before the pelvis does."""
+    chest_max_rad: float
     counter_ratio: float
     """Of the hips' turn, that the head turns back."""
     start_frames: float

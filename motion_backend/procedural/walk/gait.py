@@ -312,6 +312,7 @@ def _trunk(
     forward = row.lean.spine_share * lean + row.drunk.lean_rad * unsteady + jolt
     turned = row.lean.looks_share * np.radians(style.veer) * moving
     turned = turned + np.radians(own.shoulder_turn_deg) * moving - row.lean.counter_ratio * own.counter_ratio * counter
+    turned = turned + _chest_first(route)
     spine = np.stack([forward, turned, shoulders - roll + row.drunk.side_rad * unsteady], axis=1)
     return hips, spine, hip_turn, jolt
 
@@ -372,11 +373,10 @@ def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array]
     """The head: it looks where the way goes, keeps level over the steps, and does what the mood does. (T, 3)."""
     table, frames = carriage(), len(route.heading)
     (unsteady, jolt), row = moved, table.gaze
-    late = route.heading[row.ahead_frames :]
-    coming = np.concatenate([late, np.full(min(row.ahead_frames, frames), route.heading[-1])])[:frames]
     at = np.arange(frames)
     ease = smooth(at / row.start_frames) * smooth((frames - 1 - at) / row.end_frames)
-    turn = np.clip(coming - route.heading, -row.turn_max_rad, row.turn_max_rad) + row.counter_ratio * hip_turn
+    turn = np.clip(_coming(route, row.ahead_frames), -row.turn_max_rad, row.turn_max_rad) + row.counter_ratio * hip_turn
+    turn = turn - _chest_first(route)
     turn = turn + np.radians(style.glance) * ease * drift(frames, row.glance_hz, FPS, rng)
     seconds = at / FPS
     veering = smooth(seconds / row.veer_start_s) * smooth((seconds[-1] - seconds) / row.veer_end_s)
@@ -386,6 +386,18 @@ def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array]
     nod = np.radians(style.bearing.head) - upright + table.drunk.nod_rad * unsteady - row.jolt_share * jolt
     nod = nod + np.radians(style.nod) * ease * drift(frames, row.nod_hz, FPS, rng)
     return np.stack([nod, turn, np.radians(style.tilt) * ease + table.drunk.tilt_rad * unsteady], axis=1)
+
+
+def _coming(route: Route, frames: int) -> Array:
+    """How far the way will have turned so many frames later. (T,) radians."""
+    later = np.concatenate([route.heading[frames:], np.full(frames, route.heading[-1])])
+    return np.asarray(later[: len(route.heading)] - route.heading)
+
+
+def _chest_first(route: Route) -> Array:
+    """How far the chest has turned into a turn before the pelvis. (T,) radians."""
+    row = carriage().gaze
+    return np.asarray(np.clip(_coming(route, row.chest_ahead_frames), -row.chest_max_rad, row.chest_max_rad))
 
 
 def _knees(hips: Array, feet: Array) -> Array:

@@ -21,7 +21,7 @@ from motion_backend.procedural.contrapposto import contrapposto
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
 from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle, idle_table
 from motion_backend.procedural.pose import Pose, interpolate, settle_from
-from motion_backend.procedural.touch.gestures import gesture
+from motion_backend.procedural.touch.gestures import gesture, room_for
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
@@ -91,6 +91,10 @@ IN_POSE, BOTH_OUT = 0.4, 0.6
 """An arm is in a pose it is this near to (arm lengths); where not both are for so much of a way, that is no room."""
 STAYING = 0.7
 """How long arms take into the pose they are held in where the body stays, and out of it (seconds)."""
+TAKES_UP: Final = (0.6, 1.2)
+"""Seconds until what is used on the way is before the eyes, and until it has been looked at."""
+LOOKS_DOWN: Final = 0.5
+"""How far the head is bent for that (radians)."""
 LEGS = ("pelvis", "hips", "ankles", "feet", "toes")
 """The handles of who stands."""
 LEGS_DO = 1e-6
@@ -116,6 +120,12 @@ SWING_ROOM: Final = 0.06
 """with so much room about it (metres)."""
 SWING_TURNS: Final = tuple(sorted(np.arange(-np.pi, np.pi, np.pi / 12).tolist(), key=abs))
 """How far the body may turn for it, the least first (radians)."""
+OPEN_WAYS: Final = 16
+"""In so many directions open floor is looked for,"""
+OPEN_AWAY: Final = np.arange(0.0, 2.5, 0.15)
+"""so far away (metres);"""
+OPEN_AHEAD: Final = (0.4, 0.8, 1.2, 1.6)
+"""and so far ahead of who stands there it is open (metres)."""
 LEAVES_BEFORE = 0.5
 """So far before its end (metres) a way is left by who goes to another place near there."""
 
@@ -140,8 +150,10 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
         if body.stride is not None:
             halt(body, action)
         return
-    body.enter(PhaseKind.WALK)
     style = style_of(action)
+    if style.begins != ("hang", "hang") and body.stride is None and not near:
+        _take_up(body, style)
+    body.enter(PhaseKind.WALK)
     arms = arms_on_the_way(body.pose, style.bearing.arms)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
@@ -159,6 +171,14 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
         for way in before:
             _stride(body, way, None, style)
     _stride(body, path, facing, style, None if near else onward)
+
+
+def _take_up(body: Body, style: Walk) -> None:
+    """Lift what is used on the way before one, and look at it for a moment."""
+    body.enter(PhaseKind.STAND)
+    wrists, elbows = arm_arrays(*style.begins)
+    looks = replace(body.pose, arms=wrists, elbows=elbows, head=bend(LOOKS_DOWN), reaching=np.zeros(2), pressing=np.zeros(2))
+    body.add(interpolate([0.0, *(one / style.bearing.tempo for one in TAKES_UP)], [body.pose, looks, looks], FPS))
 
 
 def asks_for_haste(action: Action) -> bool:
@@ -271,6 +291,24 @@ def _where_legs_swing(body: Body) -> float:
     return float(yaws[free[0] if len(free) else np.argmin(deepest)])
 
 
+def _free(body: Body, place: Point) -> float:
+    """What is free about who stands at a place, beyond what the body needs (metres)."""
+    walkable = body.scene.walkable
+    return float(walkable.field.at(np.array([place]))[0]) - walkable.radius
+
+
+def _open_floor(body: Body, room: float) -> tuple[Point, float]:
+    """The nearest place in sight with so much room about it (metres), else the roomiest; and where one looks there."""
+    yaws, here = np.arange(OPEN_WAYS) * 2 * np.pi / OPEN_WAYS, np.array(body.place)
+    ways = np.stack([np.sin(yaws), np.cos(yaws)], axis=-1)
+    found = [(float(away), tuple((here + away * way).tolist())) for away in OPEN_AWAY for way in ways]
+    seen = [(away, place) for away, place in found if body.scene.walkable.sees(body.place, place)]
+    place = max(seen, key=lambda one: (min(_free(body, one[1]), room), -one[0]), default=(0.0, body.place))[1]
+    ahead = np.array(place) + np.array(OPEN_AHEAD)[:, None, None] * ways  # (N, ways, 2)
+    open_to = body.scene.walkable.field.at(ahead.reshape(-1, 2)).reshape(len(OPEN_AHEAD), -1).mean(axis=0)
+    return place, float(yaws[int(np.argmax(open_to))])
+
+
 def stay(body: Body, part: Part) -> None:
     """Stand where the body is: for loco with the arms as the caption has them, and let them hang again."""
     action = part.action
@@ -292,11 +330,17 @@ def stay(body: Body, part: Part) -> None:
     if style.doing in FLUNG:
         go(body, body.place, _where_legs_swing(body), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
+    room, goes = room_for(style.doing)
+    room *= body.skeleton.scale
+    if goes and _free(body, body.place) < room:
+        go(body, *_open_floor(body, room), replace(action, caption="walk"))
+        body.enter(PhaseKind.STAND)
+    spread = min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0
     bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
     body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(body.pose, **_carriage(bearing))], FPS))
     held = _idle(body, part.hold, restless)
-    body.add(_from_leg_to_leg(body, held, gesture(held, style.doing), restless))
+    body.add(_from_leg_to_leg(body, held, gesture(held, style.doing, spread, body.rng), restless))
     if style.bearing.arms != ("hang", "hang"):
         stands = {name: getattr(body.pose, name) for name in LEGS}
         body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(at_ease, **stands)], FPS))
@@ -312,8 +356,7 @@ def _from_leg_to_leg(body: Body, held: Pose, done: Pose, restless: float, goes_o
     busy = any(np.abs(getattr(done, name) - getattr(held, name)).max() > LEGS_DO for name in LEGS)
     if busy or done.reaching.any() or not done.planted.all():
         return done
-    walkable = body.scene.walkable
-    room = float(walkable.field.at(np.array([body.place]))[0]) - walkable.radius >= ROOM_TO_STEP
+    room = _free(body, body.place) >= ROOM_TO_STEP
     steps = room and all(part.kind in (PartKind.WALK, PartKind.TURN) for part in body.upcoming[:1])
     return contrapposto(done, body.skeleton, restless, body.rng, goes_on=goes_on, steps=steps)
 

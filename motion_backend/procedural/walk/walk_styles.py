@@ -95,6 +95,8 @@ class Walk:
     """What the hands do meanwhile: one of `gestures.gesture_names`."""
     stays: Seconds
     """How long it is done on the spot; 0 is a walk."""
+    begins: tuple[str, str] = ("hang", "hang")
+    """How arms hold what is taken up and looked at before who stands sets out; nothing where they hang."""
     release: bool = False
     """Whether arms come down at the end of the way, where something else begins."""
     character: GaitCharacter = NOBODY
@@ -132,7 +134,7 @@ def _sheet() -> StyleSheet:
 def walk_style(emotion: Emotion, caption: str) -> Walk:
     """The gait that a caption says, in the mood of an emotion."""
     sheet, mood = _sheet(), bearings()[emotion]
-    usual, words = sheet.emotions[Emotion.NEUTRAL], sheet.of_caption(caption)
+    usual, words = sheet.emotions[Emotion.NEUTRAL], sheet.of_caption(caption, emotion)
     # A flight through the air needs its speed: who runs does so in any mood.
     kept = ("speed", "stride", "bounce") if words.get("double", 1.0) < 0 else ()
     moods = {name: value for name, value in sheet.emotions[emotion].items() if name not in kept}

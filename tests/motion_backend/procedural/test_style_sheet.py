@@ -56,7 +56,7 @@ def test_all_that_rows_name_is_known() -> None:
     unknown = []
     for path, styles in SHEETS.items():
         sheet = read_style_sheet(path, *styles)
-        for row in (*sheet.emotions.values(), *(changes for _, changes in sheet.captions)):
+        for row in (*sheet.emotions.values(), *(one.changes for one in sheet.captions)):
             arms = [arm for arm in row.get("arms", ()) if arm not in {*arm_poses(), *HOLDS, *SURFACES, THIGHS}]
             lying = {"along", "pillow", "tucked", "loose"} if path == "lie.toml" else set()
             unknown += [(path, arm) for arm in arms if arm not in lying]
@@ -65,9 +65,16 @@ def test_all_that_rows_name_is_known() -> None:
     assert not unknown
 
 
+def test_a_row_of_a_mood_counts_in_that_mood_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = "[[captions]]\nwords = 'hop'\nheight_m = 0.2\n\n[[captions]]\nwords = 'hop'\nmoods = [\"angry\"]\nheight_m = 0.4\n"
+    sheet = sheet_of(text, tmp_path, monkeypatch)
+    assert sheet.of_caption("hop", Emotion.ANGRY) == {"height": 0.4}
+    assert sheet.of_caption("hop", Emotion.SAD) == sheet.of_caption("hop") == {"height": 0.2}
+
+
 def test_every_row_changes_something_and_is_in_small_letters_as_captions_are_when_they_are_read() -> None:
     rows = [row for path, styles in SHEETS.items() for row in read_style_sheet(path, *styles).captions]
-    assert [words.pattern for words, changes in rows if not changes or re.search(r"(?<!\\)[A-Z]", words.pattern)] == []
+    assert [row.words for row in rows if not row.changes or re.search(r"(?<!\\)[A-Z]", row.words.pattern)] == []
 
 
 def test_no_two_emotions_look_the_same() -> None:

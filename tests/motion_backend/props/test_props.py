@@ -136,19 +136,25 @@ def test_both_hands_hold_nothing_before_they_are_lifted_nor_after_they_are_down(
     held = held_in(skill, caption)
     assert held is not None
     up = raised(acted(skill, caption).motion)[:, held.hands].max(axis=1)
-    between = {grip.prop for grip in held.props if grip.hand == "both" and not grip.still}
+    between = {grip.prop for grip in held.props if grip.hand == "both" and not (grip.still or grip.stands)}
     for track in tracks(skill, caption):
         assert track.prop not in between or up[track.start : track.stop].min() > 0.25
 
 
 @for_each(("skill", "caption"), HOLDING)
-def test_what_one_hand_holds_or_lies_there_comes_and_goes_with_its_keyframe(skill: Skill, caption: str) -> None:
+def test_what_one_hand_holds_or_stands_or_lies_there_comes_and_goes_with_its_keyframe(skill: Skill, caption: str) -> None:
     held, done = held_in(skill, caption), acted(skill, caption)
     assert held is not None
     own = np.flatnonzero(done.motion.actions == done.actions[-1].keyframe)
-    between = {grip.prop for grip in held.props if grip.hand == "both" and not grip.still}
+    between = {grip.prop for grip in held.props if grip.hand == "both" and not (grip.still or grip.stands)}
     for track in tracks(skill, caption):
         assert track.prop in between or (track.start, track.stop) == (own[0], own[-1] + 1)
+
+
+def test_a_broom_stands_on_the_floor_all_along_and_goes_far_over_it() -> None:
+    (broom,) = tracks(Skill.LOCO, "sweeping the floor with both hands")
+    assert np.abs(broom.positions[:, 1]).max() < 0.01
+    assert np.ptp(broom.positions[:, [0, 2]], axis=0).max() > 1.0
 
 
 @for_each(("skill", "caption"), HOLDING)

@@ -18,13 +18,13 @@ from motion_backend.metrics.caption_predicates import judge_caption
 from motion_backend.metrics.joint_speed import MOST as FASTEST
 from motion_backend.metrics.joint_speed import fastest_joint
 from motion_backend.metrics.skin_penetration import THIN, skin_penetration
-from motion_backend.motion import Action, Character, Emotion, Motion, PhaseKind, Skill
+from motion_backend.motion import FPS, Action, Character, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.emotion_style import Bearing, arm_poses
 from motion_backend.procedural.held_poses import standing
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_pose import PILLOWS, SURFACES
 from motion_backend.procedural.sit.sit_styles import sit_style
-from motion_backend.procedural.touch.gestures import gesture, gesture_names
+from motion_backend.procedural.touch.gestures import gesture, gesture_names, gesture_table
 from motion_backend.procedural.touch.hand_captions import handling_of, with_both_hands
 from motion_backend.procedural.touch.hand_rests import HOLDS
 from motion_backend.procedural.walk.walk_styles import walk_style
@@ -313,7 +313,9 @@ def test_a_body_of_other_height_steps_straight_to_where_it_sits_down(height: flo
 
 @for_each("doing", [*gesture_names(), "", "juggle"])
 def test_a_gesture_begins_and_ends_in_the_held_pose(doing: str) -> None:
-    pose = standing((0.0, 0.0), 0.0, replace(Bearing(), arms=("desk", "desk")), build_skeleton(1.7)).repeat(80)
+    pose = standing((0.0, 0.0), 0.0, replace(Bearing(), arms=("desk", "desk")), build_skeleton(1.7))
+    move = gesture_table().moves.get(doing)
+    pose = pose.repeat(80 if move is None else max(80, round(move.every_s * FPS)))
     made = gesture(pose, doing)
     assert np.isfinite(made.arms).all()
     np.testing.assert_allclose(made.arms[-1], pose.arms[-1], atol=1e-9)
