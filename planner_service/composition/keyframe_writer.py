@@ -422,8 +422,10 @@ class KeyframeWriter:
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self.places.has(one)), "floor")
-        if last is not None and last.caption.startswith("kneeling") and caption in _ON_KNEES:
-            self.keyframes[-1] = last.model_copy(update={"caption": _ON_KNEES[caption]})
+        on_knees = _ON_KNEES.get(caption, caption)
+        if last is not None and last.caption.startswith("kneeling") and on_knees in _ON_KNEES.values():
+            self.keyframes[-1] = last.model_copy(update={"caption": on_knees})
+            self.deeds[index] = replace(deed, row=replace(deed.row, captions=(on_knees,)))
             self.body.show(index)
             return
         stood, self._opening = self._opening, opening_of(Skill.LOCO, read.text)

@@ -140,12 +140,14 @@ def on_seat_ahead(
 
 
 def on_place_ahead(deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat], reader: DeedReader) -> Deed:
-    """Who gets down to do something does so where that is done: "kneels | to look under the sofa"."""
+    """Who gets down to do something does so where that is done: "kneels | to look under the sofa", "to pray by the
+    bed"."""
     if deed.named or read.clause.verb not in _DOWN or not (deed.skill is Skill.TOUCH or deed.is_gesture):
         return deed
     purpose = next((one for one in nexts[:1] if one.clause.joint == "to"), None)
     then = reader.deed(purpose.clause) if purpose is not None else None
-    return replace(deed, pieces=then.pieces, named=True) if then is not None and then.skill is Skill.TOUCH else deed
+    there = then is not None and (then.skill is Skill.TOUCH or (then.named and then.is_gesture))
+    return replace(deed, pieces=then.pieces, named=True) if then is not None and there else deed
 
 
 def rises_later(nexts: Sequence[ReadBeat], reader: DeedReader) -> bool:
