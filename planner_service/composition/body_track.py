@@ -23,6 +23,13 @@ class BodyTrack:
     plain: bool = False
     """Whether the posture shows nothing yet but that one rests."""
     whereabouts: Whereabouts = field(default_factory=Whereabouts)
+    asleep: int = 0
+    """How many keyframes there were when it fell asleep."""
+
+    @property
+    def sleeps(self) -> bool:
+        """Whether it has fallen asleep and done nothing since."""
+        return self.resting is not None and self.asleep == len(self.keyframes) > 0
 
     def copy(self) -> BodyTrack:
         """The same, to be gone on with in another way."""
