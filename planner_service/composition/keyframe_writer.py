@@ -25,6 +25,7 @@ from planner_service.composition.earlier_deeds import done_before, with_its_noun
 from planner_service.composition.furniture_words import names_things, pieces_in, room_of, where
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
+from planner_service.composition.phone_call import hangs_up, is_talk, on_phone
 from planner_service.composition.rest_place import (
     GETS_THERE,
     dozing,
@@ -143,6 +144,7 @@ class KeyframeWriter:
         deed = self._deed(index, beats) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         nexts = beats[index + 1 :]
+        deed = on_phone(deed, read, self.body.calling, nexts) if deed is not None else None
         self._ahead = next(filter(None, (one.room or room_of(one.clause) for one in nexts)), None)
         if beat.kind in NOT_ACTED:
             self.why[index] = not_acted(read)
@@ -154,6 +156,9 @@ class KeyframeWriter:
         elif deed is not None and self.body.sleeps and deed.skill is Skill.LIEDOWN and not deed.named:
             self.body.show(index)  # "falls asleep, and dreams"
             self.deeds[index] = deed
+        elif deed is not None and self.body.calling and hangs_up(read) and not deed.named:
+            self.body.show(index)
+            self.body.hung_up = len(self.keyframes)
         elif deed is not None and (row := self._within(read)) is not None:
             self.body.show(index)
             self.deeds.update({index: replace(deed, row=row)} if row.stands else {})
@@ -468,9 +473,8 @@ class KeyframeWriter:
         last = self.keyframes[-1] if self.keyframes else None
         if last is not None and last.mood is mood:
             self.body.show(index)
-        elif last is not None and self.body.sleeps:  # nobody wakes for a mood
-            self.body.put(index, last.skill, mood, last.caption, last.furniture, last.room)
-            self.body.resting, self.body.asleep = self.keyframes[-1], len(self.keyframes)
+        elif self.body.sleeps or self.body.calling:  # nobody wakes for a mood, nor hangs up
+            self.body.go_on(index, mood)
         elif last is not None and self.body.resting is not None and self.body.plain:
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
             self.keyframes[-1] = self.body.resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
@@ -572,7 +576,9 @@ class KeyframeWriter:
 
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
     """Those of some captions that a deed may be seen in: the only ones that show it, of the skill's where they have
-    none, and nobody gets down on the floor for what is not told to be low."""
+    none, and nobody gets down on the floor for what is not told to be low; on the phone any."""
+    if some and all(map(is_talk, some)):
+        return some
     only = [[one for one in those if any(part in one.lower() for part in only_in(clause) or ())]
             for those in (some, captions()[skill.value])]  # fmt: skip
     if any(only):
