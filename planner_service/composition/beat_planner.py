@@ -176,9 +176,16 @@ def _besides(
     if read.beat.kind != "deed":
         return ()
     by = BY_A_WALL.search(read.text) if all(one.skill in (Skill.SITDOWN, Skill.LIEDOWN) for one in own) else None
-    besides = unseen(read.clause, own)
+    besides = unseen(read.clause, (*_led_by(own, keyframes), *own))
     # Seats stand where they do.
     return (*besides, by[0]) if by and not any(by[0] in one for one in besides) else besides
+
+
+def _led_by(own: Sequence[PlannedKeyframe], keyframes: Sequence[PlannedKeyframe]) -> Sequence[PlannedKeyframe]:
+    """The walk to a piece of furniture before which keyframes are done where that ends."""
+    at = next((at for at, one in enumerate(keyframes) if one is own[0]), 0) if own else 0
+    led = at > 0 and own[0].skill is Skill.LOCO and own[0].on_floor and connects(keyframes[at - 1])
+    return keyframes[at - 1 : at] if led else ()
 
 
 def _does_more(read: ReadBeat) -> bool:

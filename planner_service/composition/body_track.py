@@ -9,7 +9,9 @@ from dataclasses import dataclass, field, replace
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_table import deed_table
+from planner_service.composition.phone_call import is_talk
 from planner_service.composition.whereabouts import Whereabouts
+from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import PlannedKeyframe
 
 
@@ -23,6 +25,22 @@ class BodyTrack:
     plain: bool = False
     """Whether the posture shows nothing yet but that one rests."""
     whereabouts: Whereabouts = field(default_factory=Whereabouts)
+    asleep: int = 0
+    """How many keyframes there were when it fell asleep."""
+
+    hung_up: int = 0
+    """How many there were when it hung up the phone."""
+
+    @property
+    def sleeps(self) -> bool:
+        """Whether it has fallen asleep and done nothing since."""
+        return self.resting is not None and self.asleep == len(self.keyframes) > 0
+
+    @property
+    def calling(self) -> PlannedKeyframe | None:
+        """What it does with a phone at its ear; None where it has none, or has hung up."""
+        last = self.keyframes[-1] if self.keyframes and self.hung_up != len(self.keyframes) else None
+        return last if last is not None and is_talk(last.caption) else None
 
     def copy(self) -> BodyTrack:
         """The same, to be gone on with in another way."""
@@ -52,6 +70,13 @@ class BodyTrack:
         self.keyframes[-1] = last.model_copy(update={"also": (*last.also, index)})
         if self.resting is not None:
             self.resting = self.keyframes[-1]
+
+    def go_on(self, index: int, mood: Emotion) -> None:
+        """The same once more, asleep or on the phone, in another mood."""
+        last, sleeps = self.keyframes[-1], self.sleeps
+        self.put(index, last.skill, mood, last.caption, "floor" if connects(last) else last.furniture, last.room)
+        self.resting = self.keyframes[-1] if self.resting is not None else None
+        self.asleep = len(self.keyframes) if sleeps else self.asleep
 
     def stays(self, keyframe: PlannedKeyframe, room: str | None) -> bool:
         """Whether what a keyframe is done at is what the body sits on, or has just touched."""

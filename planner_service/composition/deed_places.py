@@ -4,17 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import Final
 
 from motion_backend.motion import Skill
 from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader
 from planner_service.composition.deed_table import deed_table
-from planner_service.composition.furniture_words import room_of
+from planner_service.composition.furniture_words import listed_places, room_of, typical_of, where
+from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.details import details_of
 from planner_service.themes.opening_words import opening_of
+from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
+
+_AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
+"""Words before another place."""
+_MOST_PLACES: Final = 3
 
 
 @dataclass(frozen=True)
@@ -65,3 +73,18 @@ class DeedPlaces:
             return True
         kinds = furniture.categories_of(word)
         return any(category in kinds for name, those in self.home.items() if room in (None, name) for category in those)
+
+
+def is_at(keyframe: PlannedKeyframe, deed: Deed) -> bool:
+    """Whether a keyframe is at the furniture that a deed is first done at."""
+    kinds = furniture.categories_of(keyframe.piece[0])
+    return any(not kinds.isdisjoint(furniture.categories_of(piece)) for piece in deed.pieces[:1] if piece != "floor")
+
+
+def further(clause: Clause, deed: Deed) -> list[Deed]:
+    """The same deed where else it is done: "looks under the bed, | behind the sofa"."""
+    places = (where(text) for text in details_of(clause)[:_MOST_PLACES] if deed.named and text.split()[0] in _AT)
+    listed = listed_places(clause) or typical_of(clause.text)
+    found = [*(piece for some in places for piece in some[:1]), *listed[: _MOST_PLACES + 1]]
+    found = [piece for piece in found if affords(piece, "touch") and piece != deed.pieces[0]]
+    return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]

@@ -312,7 +312,8 @@ class DeedReader:
         if deed.skill is Skill.LOCO and (clause.lemmas == ("leave",) or not (clause.verb or deed.row.captions)):
             return all(one.skill is Skill.LOCO for one in keyframes)  # seen walking, however they walk
         rests = [one for one in keyframes if one.skill is deed.skill in (Skill.SITDOWN, Skill.LIEDOWN)]
-        if by_table and rests and (RESTS.match(clause.text) or (deed.named and clause.verb in _RESTING)):
+        besides = clause.text.partition(" with ")[0]
+        if by_table and rests and (RESTS.match(besides) or (deed.named and clause.verb in _RESTING)):
             return True  # whatever hands do there
         if deed.skill in RISINGS and keyframes and all(rises_again(one) for one in keyframes):
             return True  # who kneels gets up
@@ -322,6 +323,9 @@ class DeedReader:
             rises = max(share for (skill, _), share in likely.captions.items() if skill in RISINGS)
             return min(rises, likely.shown) > SURE  # from whatever: a bed or a chair
         said = any(shows(one.skill, one.caption, clause) for one in keyframes)
+        if any(not likely.has_learned(one.skill, one.caption) and shows(one.skill, one.caption, clause, own=True)
+               for one in keyframes):  # fmt: skip
+            return True  # of a caption that no label knows only its senses tell
         least = SAID if said else SURE if by_table else SURELY
         return max(shown(likely, clause, one, placed) for one in keyframes) > least
 

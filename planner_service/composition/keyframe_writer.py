@@ -18,20 +18,14 @@ from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.body_track import BodyTrack
 from planner_service.composition.caption_senses import only_in, shows
 from planner_service.composition.deed_lexicon import Deed, row_of
-from planner_service.composition.deed_places import DeedPlaces
+from planner_service.composition.deed_places import DeedPlaces, further, is_at
 from planner_service.composition.deed_reader import TOUCHES, DeedReader, rises_again
 from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.composition.earlier_deeds import done_before, with_its_noun
-from planner_service.composition.furniture_words import (
-    listed_places,
-    names_things,
-    pieces_in,
-    room_of,
-    typical_of,
-    where,
-)
+from planner_service.composition.furniture_words import names_things, pieces_in, room_of, where
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
+from planner_service.composition.phone_call import hangs_up, is_talk, on_phone
 from planner_service.composition.rest_place import (
     GETS_THERE,
     dozing,
@@ -49,6 +43,7 @@ from planner_service.composition.rest_place import (
     rises_later,
     sits,
     sits_up,
+    sleeps,
 )
 from planner_service.composition.stand_in import SEATS, is_too_much
 from planner_service.composition.unacted_beats import BESIDE, HELD, NOT_ACTED, UNSHOWN, not_acted
@@ -58,7 +53,6 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
-from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.opening_words import Kind, opening_of
 from planner_service.themes.protagonist import head_of, names_somebody
@@ -68,9 +62,6 @@ from scene_graphs import furniture
 
 EXPRESSED: Final = (Emotion.HAPPY, Emotion.ANGRY, Emotion.SAD)
 """Moods whose laughing, shouting and sighing a body's bearing shows; it does not sweat or yawn."""
-_AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))
-"""Words before another place."""
-_MOST_PLACES: Final = 3
 _AGAIN_VERBS: Final = ("start", "begin", "try")
 _AGAIN: Final = frozenset(("again", "over", "afresh", "anew", "more"))
 _REFUSED: Final = {"sit": Skill.SITDOWN, "lie": Skill.LIEDOWN}
@@ -153,12 +144,21 @@ class KeyframeWriter:
         deed = self._deed(index, beats) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         nexts = beats[index + 1 :]
+        deed = on_phone(deed, read, self.body.calling, nexts) if deed is not None else None
         self._ahead = next(filter(None, (one.room or room_of(one.clause) for one in nexts)), None)
         if beat.kind in NOT_ACTED:
             self.why[index] = not_acted(read)
             self.body.whereabouts.told(read.clause)
         elif deed is not None and deed.row.why:
             self.why[index] = deed.row.why
+        elif self.body.sleeps and (not read.clause.verb or (" " not in read.text and read.text.endswith("ed"))):
+            self._feel(index, beats)  # "falls asleep, exhausted"
+        elif deed is not None and self.body.sleeps and deed.skill is Skill.LIEDOWN and not deed.named:
+            self.body.show(index)  # "falls asleep, and dreams"
+            self.deeds[index] = deed
+        elif deed is not None and self.body.calling and hangs_up(read) and not deed.named:
+            self.body.show(index)
+            self.body.hung_up = len(self.keyframes)
         elif deed is not None and (row := self._within(read)) is not None:
             self.body.show(index)
             self.deeds.update({index: replace(deed, row=row)} if row.stands else {})
@@ -282,7 +282,7 @@ class KeyframeWriter:
             case Skill.LOCO:
                 self._walk(index, read, deed, mood)
             case Skill.TOUCH:
-                for piece in (deed, *_further(read.clause, deed)):
+                for piece in (deed, *further(read.clause, deed)):
                     if self._add(index, read, piece, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
                         self.body.resting = None
             case Skill.LIEDOWN if not deed.named and (seated := dozing(self.body.resting, read, self.reader)):
@@ -358,6 +358,7 @@ class KeyframeWriter:
                     )
                     self.body.plain = False
                 self.body.show(index)
+                self._sleep(read)
                 return
         if resting is not None and here:
             deed = Deed(deed.row, skill, (resting.furniture,), True)
@@ -367,11 +368,17 @@ class KeyframeWriter:
             if begins and (self._rises or stays):  # who "cannot sleep. He gets up" lies there when the story begins
                 self.keyframes[:] = [self.keyframes[-1].model_copy(update={"already": True})]
             self.body.resting, self.body.plain = self.keyframes[-1], not (deed.row.rests or captions)
+            self._sleep(read)
             tables = [
                 table for table, seats in deed_table().seats_at.items() if seats[0] == self.body.resting.furniture
             ]
             if tables and skill is Skill.SITDOWN:  # what is written there lies there
                 self.body.whereabouts.brought(read.clause, (self.body.resting.room, tables[0]))
+
+    def _sleep(self, read: ReadBeat) -> None:
+        """Note that the body is asleep now, or still."""
+        if sleeps(read.clause):
+            self.body.asleep = len(self.keyframes)
 
     def _begin(self, index: int, deed: Deed, mood: Emotion) -> None:
         """Lie or sit: who gets up has done so before."""
@@ -422,8 +429,10 @@ class KeyframeWriter:
         caption = self._one_of(captions, mood, index, Skill.LOCO)
         last = self.keyframes[-1] if self.keyframes else None
         piece = next((one for one in deed.pieces if self.places.has(one)), "floor")
-        if last is not None and last.caption.startswith("kneeling") and caption in _ON_KNEES:
-            self.keyframes[-1] = last.model_copy(update={"caption": _ON_KNEES[caption]})
+        on_knees = _ON_KNEES.get(caption, caption)
+        if last is not None and last.caption.startswith("kneeling") and on_knees in _ON_KNEES.values():
+            self.keyframes[-1] = last.model_copy(update={"caption": on_knees})
+            self.deeds[index] = replace(deed, row=replace(deed.row, captions=(on_knees,)))
             self.body.show(index)
             return
         stood, self._opening = self._opening, opening_of(Skill.LOCO, read.text)
@@ -464,6 +473,8 @@ class KeyframeWriter:
         last = self.keyframes[-1] if self.keyframes else None
         if last is not None and last.mood is mood:
             self.body.show(index)
+        elif self.body.sleeps or self.body.calling:  # nobody wakes for a mood, nor hangs up
+            self.body.go_on(index, mood)
         elif last is not None and self.body.resting is not None and self.body.plain:
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)
             self.keyframes[-1] = self.body.resting = last.model_copy(update={"caption": caption, "emotion": mood.value})
@@ -501,7 +512,7 @@ class KeyframeWriter:
             part = None  # nobody goes elsewhere for what is done where one is
         if part is not None and self.body.resting is not None and skill is Skill.TOUCH:
             part = None if furniture.class_of(part.keyframes[-1].furniture) in SEATS else part  # nor to another seat
-        if part is not None and deed.named and not _is_at(part.keyframes[-1], deed):
+        if part is not None and deed.named and not is_at(part.keyframes[-1], deed):
             part = None  # the same is done at another place already
         same = part is not None and part.keyframes[-1].skill is skill
         if (
@@ -565,7 +576,9 @@ class KeyframeWriter:
 
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
     """Those of some captions that a deed may be seen in: the only ones that show it, of the skill's where they have
-    none, and nobody gets down on the floor for what is not told to be low."""
+    none, and nobody gets down on the floor for what is not told to be low; on the phone any."""
+    if some and all(map(is_talk, some)):
+        return some
     parts = only_in(clause) or ()
     only = [[one for one in those if any(part in one.lower() for part in parts)]
             for those in (some, captions()[skill.value])]  # fmt: skip
@@ -573,17 +586,3 @@ def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
         return only[0] or only[1]
     standing = [one for one in some if "prone" not in one or _LOW_DOWN.search(clause.text)]
     return standing or (TOUCHES if skill is Skill.TOUCH else some)
-
-
-def _is_at(keyframe: PlannedKeyframe, deed: Deed) -> bool:
-    kinds = furniture.categories_of(keyframe.piece[0])
-    return any(not kinds.isdisjoint(furniture.categories_of(piece)) for piece in deed.pieces[:1] if piece != "floor")
-
-
-def _further(clause: Clause, deed: Deed) -> list[Deed]:
-    """The same deed where else it is done: "looks under the bed, | behind the sofa"."""
-    places = (where(text) for text in details_of(clause)[:_MOST_PLACES] if deed.named and text.split()[0] in _AT)
-    listed = listed_places(clause) or typical_of(clause.text)
-    found = [*(piece for some in places for piece in some[:1]), *listed[: _MOST_PLACES + 1]]
-    found = [piece for piece in found if affords(piece, "touch") and piece != deed.pieces[0]]
-    return [Deed(deed.row, deed.skill, (piece,), True) for piece in dict.fromkeys(found)]

@@ -33,7 +33,10 @@ _ON_FEET: Final = re.compile(r"\b(?:standing|on (?:his|her|their|my) feet)\b")
 _GOES: Final = ("leave", "exit", "go", "walk", "run", "rush", "hurry")
 """Verbs of who gets up to do it."""
 _DOWN: Final = ("kneel", "bend", "crouch", "stoop", "squat", "get")
-_SLEEPS: Final = ("sleep", "snore", "doze", "nap", "nod")
+_SLEEPS: Final = ("sleep", "snore", "doze", "nap", "nod", "snooze", "slumber", "drowse")
+_ASLEEP: Final = frozenset(("asleep", "sleep"))
+_ON_ARMS: Final = "head on folded arms on the table"
+_IN_SEAT: Final = "asleep in the seat, head sunk to the chest"
 _TAKEN: Final = DeedRow(
     ("eat",), Skill.TOUCH, captions=("pick up with the right hand", "pick up with the left hand"), things=True
 )
@@ -99,14 +102,21 @@ def eats(deed: Deed) -> bool:
 
 def dozing(resting: PlannedKeyframe | None, read: ReadBeat, reader: DeedReader) -> tuple[str, ...]:
     """Ways of sitting on what cannot be lain on that show what is else done lying: "nods off"."""
-    likely = reader.likely(read.clause)
     if resting is None or resting.skill is not Skill.SITDOWN or affords(resting.furniture, "lie"):
         return ()
     if shows(Skill.SITDOWN, resting.caption, read.clause):
         return (resting.caption,)  # who has their head on the desk falls asleep there
-    if likely is None:
-        return ()
-    return seated_as_well(likely)
+    if sleeps(read.clause):
+        at_table = any(seats[0] == resting.furniture for seats in deed_table().seats_at.values())
+        return (_ON_ARMS if at_table else _IN_SEAT,)
+    likely = reader.likely(read.clause)
+    return seated_as_well(likely) if likely is not None else ()
+
+
+def sleeps(clause: Clause) -> bool:
+    """Whether somebody falls asleep, or sleeps."""
+    falls = clause.verb in ("fall", "drift", "drop", "be", "stay", "go") and not _ASLEEP.isdisjoint(clause.lemmas[1:3])
+    return not clause.unable and (falls or clause.verb in _SLEEPS)
 
 
 def sits_up(read: ReadBeat, deed: Deed) -> bool:
@@ -140,12 +150,14 @@ def on_seat_ahead(
 
 
 def on_place_ahead(deed: Deed, read: ReadBeat, nexts: Sequence[ReadBeat], reader: DeedReader) -> Deed:
-    """Who gets down to do something does so where that is done: "kneels | to look under the sofa"."""
+    """Who gets down to do something does so where that is done: "kneels | to look under the sofa", "to pray by the
+    bed"."""
     if deed.named or read.clause.verb not in _DOWN or not (deed.skill is Skill.TOUCH or deed.is_gesture):
         return deed
     purpose = next((one for one in nexts[:1] if one.clause.joint == "to"), None)
     then = reader.deed(purpose.clause) if purpose is not None else None
-    return replace(deed, pieces=then.pieces, named=True) if then is not None and then.skill is Skill.TOUCH else deed
+    there = then is not None and (then.skill is Skill.TOUCH or (then.named and then.is_gesture))
+    return replace(deed, pieces=then.pieces, named=True) if then is not None and there else deed
 
 
 def rises_later(nexts: Sequence[ReadBeat], reader: DeedReader) -> bool:

@@ -304,7 +304,7 @@ class _Stage:
 
     def _away(self, spot: Spot) -> float:
         """How far the body is from where one stands for a spot (metres)."""
-        return 0.0 if self.at is None else float(np.hypot(spot.standing[0] - self.at[0], spot.standing[1] - self.at[1]))
+        return 0.0 if self.at is None else _between(spot.standing, self.at)
 
     def _is_on(self, place: Place) -> bool:
         """Whether what the body rests on still is that place."""
@@ -345,7 +345,7 @@ class _Stage:
         """Whether the body is there, or a step aside: nobody walks round a thing to touch it again."""
         if self.at is None or self.walks_on:
             return False
-        return bool(np.hypot(spot.standing[0] - self.at[0], spot.standing[1] - self.at[1]) < A_STEP)
+        return _between(spot.standing, self.at) < A_STEP
 
     @cached_property
     def _elbows(self) -> ElbowRoom:
@@ -362,7 +362,7 @@ class _Stage:
                 key=lambda s: (
                     self._cluttered(s),
                     _scoots(s),
-                    round(float(np.hypot(s.standing[0] - start[0], s.standing[1] - start[1])), 1),
+                    round(_between(s.standing, start), 1),
                 )
             )
         return found
@@ -471,7 +471,12 @@ class _Stage:
             spot = following.spot
             return replace(action, goal=spot.standing, facing=spot.approach)
         if place.object_id is not None:
-            beside = self._reachable(self.home.object(place.object_id), "touch")
+            placed = self.home.object(place.object_id)
+            beside, sides = self._reachable(placed, "touch"), self._reachable(placed, "lie")
+            near = leg.onward or leg.at
+            if sides and near is not None:  # of a bed, its side
+                side = min((one.standing for one in sides), key=lambda one: _between(one, near))
+                beside.sort(key=lambda one: _between(one.standing, side))
             if beside:
                 return replace(action, goal=beside[0].standing, facing=beside[0].facing)
         return replace(action, goal=self._anywhere(place.room, leg), facing=None)
@@ -521,6 +526,10 @@ class _Leg(NamedTuple):
     at: Point | None
     onward: Point | None
     """Where the body goes after this walk."""
+
+
+def _between(one: Point, other: Point) -> float:
+    return float(np.hypot(one[0] - other[0], one[1] - other[1]))
 
 
 def _straight_on(start: Point, middle: Point, end: Point) -> float:
