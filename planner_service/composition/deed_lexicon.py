@@ -19,6 +19,7 @@ from planner_service.composition.furniture_words import (
 )
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
+from planner_service.themes.constructions import light_readings
 from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
@@ -342,6 +343,7 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     for place, lemma in enumerate(clause.lemmas[1:], 1):
         if gerund(lemma) in beside and lemma not in ("be",):
             yield clause.lemmas[place:]
+    yield from light_readings(clause.lemmas)
 
 
 def _by_things(clause: Clause, about: str) -> DeedRow | None:

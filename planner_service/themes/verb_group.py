@@ -11,6 +11,8 @@ from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import Token, verb_place
 
 _LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
+_SEEING: Final = frozenset(("find", "catch", "feel", "watch", "see", "discover", "hear", "notice"))
+"""Who does so of themselves does what they find themselves doing: "finds herself sitting on the floor"."""
 _ONESELF: Final = frozenset(("himself", "herself", "themselves", "themself", "myself", "yourself"))
 """Who lets or makes themselves do a thing does it."""
 NEARLY: Final = frozenset(("nearly", "almost"))
@@ -73,6 +75,8 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
         base in _LETTING and ahead in _ONESELF and (after == "to" or verb_of(after) == after)
     ):  # "lets himself sit", "forces herself to eat"
         return 3 if [token.low for token in words[at + 2 : at + 3]] == ["to"] else 2
+    if base in _SEEING and ahead in _ONESELF and verb_of(after) and (after.endswith("ing") or verb_of(after) == after):
+        return 2
     if low == "used" and ahead == "to":  # "used to play", and does so no more
         group.perfect = True
         return 2
