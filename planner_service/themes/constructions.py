@@ -14,12 +14,14 @@ from typing import Final
 from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import (
     Words,
+    gerund,
     grammar,
     is_adjective,
     is_noun,
     kinds_of,
     lemma_of,
     participle,
+    past,
     third_person,
     verb_of,
 )
@@ -60,6 +62,8 @@ def event_of(word: str) -> str:
 
 def meant(clause: Clause) -> list[Clause]:
     """The clause with the deed that it means, where its verb is none; and a second one where it tells of two."""
+    if made := _made_to(clause):
+        return made
     if clause.quotes or clause.aside:
         return [clause]
     for construction in _CONSTRUCTIONS:
@@ -97,6 +101,7 @@ def _head(subject: str) -> str:
 def _owner(subject: str) -> str:
     """Whose somebody's deed is: "she" of "her yawn", "Helga" of "Helga's pacing"."""
     first = subject.split(" ", 1)[0]
+    first = next((one for one in subject.split() if one.endswith(("'s", "’s"))), first)
     if first.lower() in _OWNERS:
         return _OWNERS[first.lower()]
     return first[:-2] if first.endswith(("'s", "’s")) and is_somebody(first[:-2]) else ""
@@ -188,6 +193,51 @@ def _carried(clause: Clause) -> list[Clause]:
     return [_meaning(clause, ("fall" if drops else "go", *after), who)]
 
 
+def _made_to(clause: Clause) -> list[Clause]:
+    """Somebody does what something makes them do: "the joke has him laughing", "a letter | that makes her cry"."""
+    if clause.verb not in _words("making") or not clause.subject or is_somebody(clause.subject.split()[-1]):
+        return []
+    who, size = _undergoer(clause)
+    after = _after(clause)[size:]
+    after = after[after[:1] == ("to",) :]
+    base = verb_of(after[0]) if after else ""
+    if not who or size > _FEWEST or not base or clause.denied or after[0] not in (base, gerund(base)):
+        return []
+    if is_adjective(after[0]) or base in theme_words()["state_verbs"]:
+        return []  # "the heat makes her sick"
+    made = _meaning(clause, (base, *after[1:]), who)
+    return [replace(made, text=clause.text, aside=False) if clause.aside else made]
+
+
+def _way(clause: Clause) -> list[Clause]:
+    """Somebody goes a way, doing something else: "yawns his way to the bathroom"."""
+    after = _after(clause)
+    at = next((at for at, word in enumerate(after[:3]) if word == "way"), 0)
+    goes = after[at + 1 : at + 2] and after[at + 1] in ("to", "into", "across", "along", "down", "up", "out", "around", "towards")
+    if not at or after[at - 1] not in _OWNERS or not goes or not event_of(clause.verb):
+        return []
+    return [clause, replace(_meaning(clause, ("walk", *after[at + 1 :]), clause.subject), joint="ing")]
+
+
+def _held(clause: Clause) -> list[Clause]:
+    """Somebody holds what is told to be held, or holds themself so: "a towel clutched to her chest", "legs drawn up"."""
+    head, words = lemma_of(_head(clause.subject)), [token.low for token in tokens_of(clause.text)]
+    done, limb = participle(clause.verb), head in theme_words()["body"]
+    if done not in words[:4] or done == clause.verb or not grammar().auxiliaries.isdisjoint(words):
+        return []
+    bare = clause.absolute or done != past(clause.verb)  # no finite verb: "her legs drew up"
+    if limb:
+        is_so = bare
+    else:
+        first = clause.subject.split(" ", 1)[0].lower()
+        marked = first in grammar().marks or first.endswith(("'s", "’s"))
+        finished = (bare or not marked) and clause.verb not in _words("states")  # "Shirt ironed, the cake eaten"
+        is_so = head in things().keys() - theme_words()["no_heroes"] and (clause.verb in _words("holding") or finished)
+    if not is_so:
+        return []
+    return [_meaning(clause, (clause.verb, *clause.subject.split(), *_after(clause)))]
+
+
 def _received(clause: Clause) -> list[Clause]:
     """Somebody rests on what takes them: "the armchair receives Gregor"."""
     head = _head(clause.subject)
@@ -219,7 +269,7 @@ def _moved(clause: Clause) -> list[Clause]:
     if clause.verb == "come":
         return [_meaning(clause, ("take", "off", *thing))] if worn and way == "off" else []
     placed = way in ("in", "into", "on", "onto", "under", "back", "over", "to") and len(after) > 1
-    lies = head not in theme_words()["no_heroes"] and after[-1] not in ("voicemail", "floor", "pieces", "waste")
+    lies = after[-1] not in ("voicemail", "floor", "pieces", "waste", "ringing")
     return [_meaning(clause, ("put", *thing, *after))] if placed and lies else []
 
 
@@ -253,15 +303,16 @@ def _by_event(clause: Clause) -> list[Clause]:
     """One event is all that is told: "his only answer is a nod", "replies with a shrug", "there is a yawn"."""
     head = lemma_of(_head(clause.subject))
     says = clause.verb in _words("answering")
-    told = clause.verb in ("be", "come", "follow") and (not clause.subject or head in _words("answers"))
+    alone = not clause.subject or head in _words("answers") or clause.subject.endswith(("'s", "’s"))
+    told = clause.verb in ("be", "come", "follow") and alone
     if not (says or told) or clause.denied:
         return []
     after = _after(clause)
     if says:
         at = next((at for at, word in enumerate(after) if word in ("with", "by")), None)
         after = () if at is None else after[at + 1 :]
-    event = _event_in(after)
-    return [_meaning(clause, event, _owner(clause.subject) or clause.subject * says)] if event else []
+    who = _owner(clause.subject) or clause.subject * says
+    return [_meaning(clause, event, who) for event in _events_in(after)]
 
 
 def _alone(clause: Clause) -> list[Clause]:
@@ -269,26 +320,32 @@ def _alone(clause: Clause) -> list[Clause]:
     words = _after(clause)
     if clause.verb or not words:
         return []
+    if words[0] in ("on", "off") and words[1:2] == ("with",):  # "off with the shoes"
+        return [_meaning(clause, ("put" if words[0] == "on" else "take", words[0], *words[2:]))]
     led = next((at for at, word in enumerate(words[:4]) if word in ("a", "an", "another", "one")), None)
     before = words[: led or 0]
     if led is None or not (set(before) <= grammar().adverbs | grammar().joints or before[0] in _words("besides")):
         return []
-    event = _event_in(words[led:])
-    return [_meaning(clause, event)] if event else []
+    return [_meaning(clause, event) for event in _events_in(words[led:])]
 
 
-def _event_in(words: Sequence[str]) -> tuple[str, ...]:
-    """The deed of an event that words begin with, and what it is done to: of "a shake of the head" shake head."""
-    if not words or words[0] not in grammar().marks | grammar().numbers | {"one"}:
-        return ()
-    ends = grammar().prepositions | grammar().adverbs | _ON | {"and", ",", ""}
+def _events_in(words: Sequence[str]) -> list[tuple[str, ...]]:
+    """The deeds of events that words begin with, and what they are done to: of "a shake of the head" shake the head."""
+    known = grammar()
+    marks = known.marks - {"to"} | known.numbers | {"one"}
+    if not words or words[0] not in marks:
+        return []
+    ends = known.prepositions | known.adverbs | marks | _ON | {"and", ""}
     for at, word in enumerate(words[1 : _MOST_BEFORE_EVENT + 2], 1):
         after = tuple(words[at + 1 :])
         if (event := event_of(word)) and (*after, "")[0] in ends:
-            return (event, *after[after[:1] == ("of",) :])
+            joined = after[after[:1] == ("and",) :]
+            if others := _events_in(joined):
+                return [(event,), *others]
+            return [(event, *after[after[:1] == ("of",) :])]
         if not (is_adjective(word) or is_adverb(word)):
-            return ()
-    return ()
+            return []
+    return []
 
 
 def light_readings(lemmas: Sequence[str]) -> list[tuple[str, ...]]:
@@ -311,6 +368,8 @@ _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
     _of_eyes,
     _of_event,
     _of_hands,
+    _held,
+    _way,
     _carried,
     _received,
     _moved,

@@ -119,15 +119,25 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             if own.lower() in RELATIVES and doer:
                 own = _told_last(told, own.lower()) or doer
             told.append(
-                [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
+                [
+                    replace(part, doer=part.subject if part.aside else (part.plainly and part.subject) or own or doer, place=len(told))
+                    for part in parts
+                ]
             )
             beside = (
                 is_led(piece.joint, ()) or _main(parts).absolute
             )  # "because guests are coming", "the coffee going cold"
             if (not doer and own.lower() != "it") or not beside:
                 doer = own or doer
-        found += [part for place in in_time(pieces) for part in told[place]]
+        found += [part for place in in_time(pieces) for part in _as_supposed(told[place], pieces)]
     return tuple(found)
+
+
+def _as_supposed(parts: Sequence[Clause], pieces: Sequence[Piece]) -> list[Clause]:
+    """The clauses of a piece, denied where they would be so if something were: "if she were braver, | she would knock"."""
+    supposed = any(piece.joint in _SUPPOSING or piece.tokens[0].low in _SUPPOSING for piece in pieces)
+    would = re.compile(r"^(?:\w+ )?(?:would|could|might)\b", re.IGNORECASE)
+    return [replace(one, denied=True) if supposed and would.match(one.text) else one for one in parts]
 
 
 def _told_last(told: Sequence[Sequence[Clause]], relative: str) -> str:
@@ -279,7 +289,7 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
         too = token.low == "too" and is_adjective(tokens[at + 1].low)
         if too or token.low in known.denials | NEARLY or token.low not in known.adverbs | {"and", "but", "or"}:
             return list(tokens[at:])
-    return list(tokens[-1:])
+    return list(tokens if tokens[-1].low.endswith("ing") else tokens[-1:])  # "still chewing"
 
 
 def _denials(lead: Sequence[Token], subject: str) -> list[Token]:
