@@ -19,6 +19,7 @@ from planner_service.composition.furniture_words import (
 )
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
+from planner_service.themes.constructions import light_readings
 from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.protagonist import head_of, is_person
 from planner_service.themes.sentence_parser import Clause
@@ -327,6 +328,9 @@ def without_gestures(clause: Clause) -> DeedRow | None:
 def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     """A clause's words from its verb on, then from every later -ing on."""
     written = not _WRITTEN.isdisjoint(clause.lemmas)
+    light = light_readings(clause.lemmas)
+    if clause.verb == "give" and not is_person(" ".join(clause.lemmas[1:2])):  # "gives the pot a stir"
+        yield from light
     if clause.verb in theme_words()["speech_verbs"] and len(clause.lemmas) > 1 and not written:  # "says into the phone"
         yield ("talk", *clause.lemmas[1:])
     if lemma_of(head_of(clause.subject)) in theme_words()["body"]:  # "arms folded", "her knees drew up"
@@ -342,6 +346,7 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     for place, lemma in enumerate(clause.lemmas[1:], 1):
         if gerund(lemma) in beside and lemma not in ("be",):
             yield clause.lemmas[place:]
+    yield from light
 
 
 def _by_things(clause: Clause, about: str) -> DeedRow | None:

@@ -172,7 +172,7 @@ class DeedReader:
             named = next((word for word in one.clause.lemmas if word in _INSTRUMENTS), named)
             if one.clause.verb in _PLAYS and named:
                 self._instruments[one.clause.text] = named
-        told = [_WHEN.sub("", one.text) for one in read]  # with whose deeds they are
+        told = [_WHEN.sub("", one.clause.plainly or one.text) for one in read]  # with whose deeds they are
         before = (". ".join(told[max(place - BEFORE, 0) : place]) for place in range(len(told)))
         self._think({one.clause.text: pair for one, *pair in zip(read, told, before, strict=True)})
 

@@ -214,6 +214,7 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
     if theirs or (not sure and kind == "undone" and not clause.unable):
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
+    clause = replace(clause, text=clause.plainly) if clause.plainly and not who else clause
     return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache, lru_cache
 from itertools import groupby, takewhile
 from typing import Any, Final
@@ -22,6 +22,8 @@ from planner_service.themes.asides import (
     without_asides,
     without_relative,
 )
+from planner_service.themes.clause import Clause
+from planner_service.themes.constructions import meant
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
 from planner_service.themes.prose import prose_of
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
@@ -85,40 +87,6 @@ _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
 
 
-@dataclass(frozen=True)
-class Clause:
-    """A stretch of a sentence with one verb."""
-
-    text: str
-    """Without whom it is about, in the theme's words: "drinks a glass of wine"."""
-    subject: str
-    """Who or what does it, as it is written; empty where it goes on from the clause before."""
-    verb: str
-    """The base form of what is done; empty where there is no verb."""
-    lemmas: tuple[str, ...]
-    """The base forms of its words from the verb on."""
-    joint: str = ""
-    """What joins it to the clause before: "and", "before", ","; "to" and "ing" for a second deed of one clause."""
-    doer: str = ""
-    """Who does it: `subject`, or whoever did what is told before in its sentence."""
-    denied: bool = False
-    """Whether it is not done, or only wished for."""
-    unable: bool = False
-    """Whether it is not done since it cannot be: "cannot sleep"."""
-    perfect: bool = False
-    """Whether it had been done before."""
-    absolute: bool = False
-    """Whether its verb has no tense, though it says who does it: "coffee going cold beside him"."""
-    aside: bool = False
-    """Whether it is only spoken of: of a noun ("the letter she had hidden"), or supposed ("if he calls")."""
-    quotes: tuple[str, ...] = ()
-    """What is said in it."""
-    sentence: int = 0
-    """Index of its sentence in the text."""
-    place: int = 0
-    """Where in its sentence it is written."""
-
-
 @lru_cache(maxsize=256)
 def clauses_of_text(text: str) -> tuple[Clause, ...]:
     """What a text tells, in the order of time."""
@@ -146,19 +114,30 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             if _AGO.search(piece.text) and any(map(_NOW.search, sentences[number + 1 :])):
                 parts = [replace(part, perfect=bool(part.verb)) for part in parts]
             parts = _sharing(_main(told[-1]), parts) if told else parts
+            parts = [one for part in parts for one in meant(part)]
             own = _main(parts).subject
             if own.lower() in RELATIVES and doer:
                 own = _told_last(told, own.lower()) or doer
             told.append(
-                [replace(part, doer=part.subject if part.aside else own or doer, place=len(told)) for part in parts]
+                [
+                    replace(part, doer=part.subject if part.aside else (part.plainly and part.subject) or own or doer, place=len(told))
+                    for part in parts
+                ]
             )
             beside = (
                 is_led(piece.joint, ()) or _main(parts).absolute
             )  # "because guests are coming", "the coffee going cold"
             if (not doer and own.lower() != "it") or not beside:
                 doer = own or doer
-        found += [part for place in in_time(pieces) for part in told[place]]
+        found += [part for place in in_time(pieces) for part in _as_supposed(told[place], pieces)]
     return tuple(found)
+
+
+def _as_supposed(parts: Sequence[Clause], pieces: Sequence[Piece]) -> list[Clause]:
+    """The clauses of a piece, denied where they would be so if something were: "if she were braver, | she would knock"."""
+    supposed = any(piece.joint in _SUPPOSING or piece.tokens[0].low in _SUPPOSING for piece in pieces)
+    would = re.compile(r"^(?:\w+ )?(?:would|could|might)\b", re.IGNORECASE)
+    return [replace(one, denied=True) if supposed and would.match(one.text) else one for one in parts]
 
 
 def _told_last(told: Sequence[Sequence[Clause]], relative: str) -> str:
@@ -310,7 +289,7 @@ def _without_opening(tokens: Sequence[Token]) -> list[Token]:
         too = token.low == "too" and is_adjective(tokens[at + 1].low)
         if too or token.low in known.denials | NEARLY or token.low not in known.adverbs | {"and", "but", "or"}:
             return list(tokens[at:])
-    return list(tokens[-1:])
+    return list(tokens if tokens[-1].low.endswith("ing") else tokens[-1:])  # "still chewing"
 
 
 def _denials(lead: Sequence[Token], subject: str) -> list[Token]:

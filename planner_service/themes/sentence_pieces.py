@@ -20,12 +20,14 @@ from planner_service.themes.lexicon import (
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_adverb, names, plain, tokens_of, two_people, verb_place
+from planner_service.themes.word_order import in_usual_order
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
 """What does things in verbs' base forms."""
 _TITLED: Final = theme_words()["people"]
 """What a name may follow that it belongs to: "the nurse Anna", "my friend Bo"."""
+_PARTICLES: Final = frozenset(("up", "down", "out", "off", "over", "away", "back", "in", "on"))
 _LATER_JOINTS: Final = frozenset(("before", "until", "while"))
 _NO_JOINTS: Final = {"once": ("at", "for", "more", "all"), "while": ("a", "long", "little", "short")}
 """What joining words stand after where they join nothing: "at once", "for a while"."""
@@ -61,7 +63,7 @@ class Piece:
 
 def pieces_of(sentence: str) -> list[Piece]:
     """The sentence cut at commas and joining words, wherever a verb follows."""
-    source = plain(sentence)
+    source = in_usual_order(plain(sentence))
     tokens = tokens_of(source)
     cut: list[Piece] = []
     joint, current = "", list[Token]()
@@ -75,7 +77,7 @@ def pieces_of(sentence: str) -> list[Piece]:
             if token.low in grammar().with_gerund:
                 current.append(token)
         else:
-            named = _is_named_doer(tokens, place) and current[-1:] and current[-1].low not in grammar().prepositions
+            named = _is_named_doer(tokens, place) and current[-1:] and not _leads_noun(current)
             led = (token.low in HEROES or named) and is_led(joint, current)
             led = led and current[-1:] and current[-1].low not in THAT
             if led and verb_place(current) is not None:
@@ -98,6 +100,12 @@ def _is_named_doer(tokens: Sequence[Token], place: int) -> bool:
     base = verb_of(after.low)
     finite = bool(base) and (is_third_person(after.low) or past(base) == after.low)
     return finite and not titled and (name.low in names() or not kinds_of(name.low))
+
+
+def _leads_noun(current: Sequence[Token]) -> bool:
+    """Whether words end in a preposition of what follows, and none of the verb before it: "with", not "sitting down"."""
+    particle = len(current) > 1 and current[-1].low in _PARTICLES and current[-2].low.endswith("ing")
+    return current[-1].low in grammar().prepositions and not particle
 
 
 def is_led(joint: str, current: Sequence[Token]) -> bool:

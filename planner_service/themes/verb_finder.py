@@ -166,7 +166,8 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
             return False  # "Socks impossible"
         if not place and tokens[1:] and alone and not word.endswith(("ed", "ing")) and lemma_of(word) in things():
             return False  # "Boxes everywhere.", "kettle on, shoes off"
-        return _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
+        beside = at < 0 < place and word.endswith("ing")  # "still chewing"
+        return beside or _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
     before = tokens[at].low
     if not at and is_noun(word) and _counts(before):
         return False  # "Thirty-one essays on the table", "Wet footprints from the bath"
@@ -271,7 +272,8 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         return (past(base) == base and named) or two or (is_plural(before) and acts)
     rests = after.endswith("ing") and before in theme_words()["people"]  # "the father stands swaying"
     plain = not (is_noun(word) and word.endswith("s")) or rests
-    return plain or _goes_on(after) or is_adjective(after) or is_noun(after)
+    named = tokens[place + 1 : place + 2] and tokens[place + 1].text[:1].isupper()  # "a yawn escapes Martha"
+    return plain or _goes_on(after) or bool(named) or is_adjective(after) or is_noun(after)
 
 
 def _finite_follows(tokens: Sequence[Token], place: int) -> bool:

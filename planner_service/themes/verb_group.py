@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, participle, verb_of
+from planner_service.themes.lexicon import grammar, lemma_of, participle, verb_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import Token, verb_place
 
 _LETTING: Final = frozenset(("let", "make", "force", "allow", "bring"))
+_SEEING: Final = frozenset(("find", "catch", "feel", "watch", "see", "discover", "hear", "notice"))
+"""Who does so of themselves does what they find themselves doing: "finds herself sitting on the floor"."""
 _ONESELF: Final = frozenset(("himself", "herself", "themselves", "themself", "myself", "yourself"))
 """Who lets or makes themselves do a thing does it."""
 NEARLY: Final = frozenset(("nearly", "almost"))
@@ -73,6 +75,10 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
         base in _LETTING and ahead in _ONESELF and (after == "to" or verb_of(after) == after)
     ):  # "lets himself sit", "forces herself to eat"
         return 3 if [token.low for token in words[at + 2 : at + 3]] == ["to"] else 2
+    if base in _SEEING and ahead in _ONESELF and verb_of(after) and (after.endswith("ing") or verb_of(after) == after):
+        return 2
+    if base in _SEEING and (step := _own_limb(words[at + 1 :])):  # "sees her own hand put the cup down"
+        return step
     if low == "used" and ahead == "to":  # "used to play", and does so no more
         group.perfect = True
         return 2
@@ -80,6 +86,15 @@ def _step(words: Sequence[Token], group: VerbGroup) -> int:
         group.perfect = True
         return 1
     return _denying_step(words, group, low, base, ahead) or _passing_step(words, at, low, base)
+
+
+def _own_limb(words: Sequence[Token]) -> int:
+    """How many words lead to what a part of somebody's own body does, 0 where none does anything."""
+    low = [token.low for token in words[:4]] + [""] * 4
+    at = 2 if low[1] == "own" else 1
+    does = verb_of(low[at + 1])
+    owned = low[0] in ("his", "her", "their", "my", "your") and lemma_of(low[at]) in theme_words()["body"]
+    return at + 2 if owned and does and (low[at + 1] == does or low[at + 1].endswith("ing")) else 0
 
 
 def _denying_step(words: Sequence[Token], group: VerbGroup, low: str, base: str, ahead: str) -> int:

@@ -146,7 +146,7 @@ def test_a_beat_that_a_mood_shows_is_in_that_mood_and_what_nobody_else_does_is_d
     assert curtains.beat.kind == "other"
     assert reader(likely(turn_on=0.9)).heard(curtains).beat.kind == "deed"
     assert reader(likely(turn_on=0.2)).heard(curtains).beat.kind == "other"
-    (kettle,) = beats_of("The kettle goes on.")
+    (kettle,) = beats_of("The kettle boils.")
     assert reader(likely(turn_on=0.8)).heard(kettle).beat.kind == "other", "a thing does it"
     assert reader(likely(turn_on=0.9)).heard(kettle).beat.kind == "deed", "somebody has put it on"
     mother = next(one for one in beats_of("She sits down. Her mother opens the fridge.") if one.beat.kind == "other")
