@@ -20,8 +20,12 @@ READ: Final = (3.0, 2.0, 7.0)
 """Seconds that words are shown at least and at most, and besides those that their letters ask for."""
 LETTERS: Final = 10.0
 """Read in a second."""
-DONE: Final = 2.5
+DONE: Final = 1.5
 """Seconds after which what a keyframe does is being done, at most: until then one sits down to it."""
+STAYS: Final = 5.0
+"""Seconds that words stand while what they tell is being done, though they were read before."""
+APART: Final = 3.0
+"""Seconds between two deeds of one clause from which on it is parted between them."""
 SHORTEST: Final = 1.5
 """Seconds between two that follow each other."""
 FASTEST: Final = 16.0
@@ -31,6 +35,7 @@ QUICK: Final = 0.7
 SENTENCE: Final = re.compile(r"[^.!?…]+[.!?…]*[\"”’')\]]*\s*")
 JOINT: Final = re.compile(r"(?<=[,;:–—])\s+|\s+(?=(?:and|but|then|so|while|until|before|after|because|when)\b)")
 """Where a sentence may be parted: what stands before and after can be read by itself."""
+GAP: Final = re.compile(r"\s+")
 GOES_ON: Final = "…"
 """At the end of words that the next ones go on."""
 _OPEN: Final = " ,;:–—"
@@ -131,7 +136,7 @@ def subtitles(
         letters = list(accumulate((len(page.text) for page in line.pages), initial=0))
         cuts = [start + round((stop - start) * part / max(letters[-1], 1)) for part in letters]
         shown += [
-            Subtitle(begin, min(end, begin + round(_read(page) * fps)), page.text, page.slanted)
+            Subtitle(begin, min(end, begin + round(max(_read(page), STAYS) * fps)), page.text, page.slanted)
             for page, (begin, end) in zip(line.pages, pairwise(cuts), strict=True)
             if end > begin
         ]
@@ -160,7 +165,8 @@ def _lines(told: Told, segments: Sequence[tuple[int, int]], fps: int, titled: in
         return _Line(piece, begins, aim, end, tuple(_pages(told, piece)))
 
     lines: list[_Line] = []
-    for piece in _in_time(_with_following(_pieces(told))):
+    begins = [start for start, _ in segments]
+    for piece in _in_time(_with_following(_pieces(told, begins, round(APART * fps)))):
         lines.append(line_of(piece))
         while len(lines) > 1 and lines[-1].start(fps) - lines[-2].start(fps) < SHORTEST * fps:
             one, other = lines[-2:]
@@ -190,9 +196,9 @@ def _in_time(pieces: Iterable[_Piece]) -> list[_Piece]:
     return sorted(pieces, key=lambda piece: min(piece.keyframes))
 
 
-def _pieces(told: Told) -> Iterator[_Piece]:
+def _pieces(told: Told, begins: Sequence[int], apart: int) -> Iterator[_Piece]:
     """The told text sentence by sentence, and one that tells of several keyframes in parts, wherever a clause of it
-    ends between two of them."""
+    ends between two of them, or words do of which the deeds begin so many frames apart."""
     for sentence in SENTENCE.finditer(told.text):
         spans = [span for span in told.spans if sentence.start() <= span.start < sentence.end()]
         start, keyframes = sentence.start(), list[int]()
@@ -202,6 +208,9 @@ def _pieces(told: Told) -> Iterator[_Piece]:
                 continue
             # What is said between two deeds leads to the second: "wrote to her, | and while he waited, ate".
             joint = JOINT.search(told.text, span.end - 1, following.start + len("because"))
+            if (joint is None or joint.start() > following.start) and keyframes and following.keyframes:
+                waits = begins[min(following.keyframes)] - begins[max(keyframes)]
+                joint = GAP.search(told.text, span.end - 1) if waits >= apart else None
             if joint is not None and joint.start() <= following.start:
                 yield _Piece(start, joint.start(), tuple(keyframes))
                 start, keyframes = joint.start(), []

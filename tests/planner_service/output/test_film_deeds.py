@@ -65,14 +65,27 @@ def test_who_goes_about_with_something_in_hand_does_it_from_where_they_took_it()
     assert begins < 60
 
 
-def test_nobody_is_asleep_who_is_not_yet_down() -> None:
+@pytest.mark.parametrize("caption", ["dancing steps, arms swinging", "rush anxiously forward", "walk happily"])
+def test_what_is_done_on_the_way_is_not_told_of_who_has_arrived(caption: str) -> None:
+    motion = with_phases((PhaseKind.WALK, 120), (PhaseKind.STAND, 90))
+    assert deeds(told_of((0,)), motion, [(0, 210)], Role(captions={0: (Skill.LOCO, caption)})) == [0]
+
+
+def test_nobody_is_asleep_who_is_not_on_the_way_down() -> None:
     motion = with_phases((PhaseKind.WALK, 60), (PhaseKind.EDGE, 30), (PhaseKind.LIEDOWN, 100))
+    motion.root_positions[:, 1] = np.interp(np.arange(190), [100, 140], [1.0, 0.4])
     captions = {0: (Skill.LIEDOWN, "lie down")}
     (awake,), (asleep,) = (
         deeds(told_of((0,)), motion, [(0, 190)], Role(asleep=frozenset(who), captions=captions)) for who in ((), (0,))
     )
     assert awake == 60
-    assert asleep > 90 + 40
+    assert 110 < asleep < 130
+
+
+def test_who_lies_already_is_asleep_at_once() -> None:
+    motion = with_phases((PhaseKind.LIEDOWN, 100))
+    role = Role(asleep=frozenset((0,)), captions={0: (Skill.LIEDOWN, "lie down")})
+    assert deeds(told_of((0,)), motion, [(0, 100)], role) == [0]
 
 
 WAITS = st.lists(st.tuples(st.integers(45, 300), st.floats(0.0, 0.9), st.integers(4, 40)), min_size=1, max_size=8)

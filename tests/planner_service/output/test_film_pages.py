@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from motion_backend.motion import FPS
 from planner_service.narration.told import Span, Told
 from planner_service.output.film import Filmed
-from planner_service.output.film_pages import LETTERS, QUICK, READ, subtitles
+from planner_service.output.film_pages import LETTERS, QUICK, READ, STAYS, subtitles
 from planner_service.pipeline import Pipeline, StoryRequest
 
 
@@ -23,9 +23,10 @@ def test_words_stand_for_as_long_as_their_letters_ask_within_bounds(letters: int
     (shown,) = subtitles(told, [(0, 60 * FPS)], FPS)
     least, first, most = READ
     assert shown.text == text
-    assert (shown.stop - shown.start) / FPS == pytest.approx(
-        min(max(least, first + len(text) / LETTERS), most), abs=1 / FPS
-    )
+    read = min(max(least, first + len(text) / LETTERS), most)
+    assert (shown.stop - shown.start) / FPS == pytest.approx(max(read, STAYS), abs=1 / FPS)
+    (brief,) = subtitles(told, [(0, round(read * FPS))], FPS)
+    assert (brief.stop - brief.start) / FPS == pytest.approx(read, abs=1 / FPS), "it is over, and was read"
 
 
 def test_words_go_when_what_they_tell_is_over_as_soon_as_they_could_be_read() -> None:
@@ -123,10 +124,14 @@ def test_a_sentence_is_parted_only_where_a_clause_ends_and_its_beginning_is_neve
     soon = subtitles(told, [(0, 3), (3, 600), (600, 900)], FPS)
     assert soon[0].text == "She got a call that her grandson was born, danced through the\nroom…"
     assert soon[-1].text == "and sat down."
-    # Nothing but the same clause lies between these two deeds.
+
+
+def test_words_of_one_clause_are_parted_where_their_deeds_are_far_apart() -> None:
     text = "He sat down reading a book."
     told = Told("", text, (Span(0, 11, (0,)), Span(12, 26, (1,))))
-    assert [line.text for line in subtitles(told, [(0, 300), (300, 600)], FPS)] == [text]
+    assert [line.text for line in subtitles(told, [(0, 60), (60, 360)], FPS)] == [text]
+    far = subtitles(told, [(0, 300), (300, 600)], FPS)
+    assert [(line.text, line.start < 300) for line in far] == [("He sat down…", True), ("reading a book.", False)]
 
 
 def test_words_that_are_not_seen_are_slanted_and_whole_subtitles_of_them_left_out() -> None:
