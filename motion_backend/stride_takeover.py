@@ -166,8 +166,6 @@ def joined(history: History, motion: Motion, half_life: float = HALF_LIFE, of_ar
     In `half_life` seconds half of it is gone; of arms, which hang free and may be off by much, in `of_arms`. Where a
     joint would be flung at that, it takes longer.
     """
-    if len(history.root_positions) < 2 or len(motion) < 2:
-        return motion
     for longer in LONGER:
         found = joined_within(history, motion, longer * half_life, longer * (half_life if of_arms is None else of_arms))
         if _flung(history, found) <= FLUNG:
@@ -180,13 +178,15 @@ def _flung(history: History, motion: Motion) -> float:
     roots = np.concatenate([history.root_positions[-2:], motion.root_positions[:ONSET]])
     local = np.concatenate([history.local_rotations[-2:], motion.local_rotations[:ONSET]])
     places = motion.skeleton.forward_kinematics(roots, local)[0].astype(np.float64)
-    return float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max()) * FPS
+    return float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max(initial=0.0)) * FPS
 
 
 def joined_within(history: History, motion: Motion, half_life: float, of_arms: float) -> Motion:
-    """The same in just these times, which a foot that has to land has no more of; both need two frames."""
+    """The same in just these times, which a foot that has to land has no more of."""
     roots, local = history.root_positions[-2:], history.local_rotations[-2:]
     to, turned = motion.root_positions[:2].astype(np.float64), motion.local_rotations[:2].astype(np.float64)
+    if len(roots) < 2 or len(to) < 2:
+        return motion
     seconds = np.arange(1, len(motion) + 1)[:, None] / FPS
     pace = to[1] - to[0]
     off, drift = roots[1] - (to[0] - pace), FPS * (roots[1] - roots[0] - pace)

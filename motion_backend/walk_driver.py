@@ -67,6 +67,8 @@ OWN: Final = frozenset({"speed", "bearing", "character", "release", "stride", "r
 """What a caption may say of a walk that is still a plain one."""
 BORROWED: Final = "borrowed"
 """What a state remembers whose stride was another body's than the one that remembers it."""
+ITSELF: Final = 0.002
+"""Metres that its joints may be off for a body to be itself again."""
 HURRY: Final = (0.7, 1.4)
 """How much slower and faster than the procedural body a generator may go that has a pace of its own."""
 MOST, AGAIN = 5, 15
@@ -262,9 +264,17 @@ def ruled(home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) ->
     """A part as the procedural body does it from here on, whoever moved the body before."""
     motion, after = ProceduralBackend().advance(home, part, upcoming, state)
     if state.memory.get(BORROWED) and len(motion):
-        motion = joined(state.history, motion, of_arms=ARMS_HALF_LIFE)
+        own, motion = motion, joined(state.history, motion, of_arms=ARMS_HALF_LIFE)
         after = replace(after, history=state.history.followed_by(motion))
+        if _apart(own, motion) > ITSELF:
+            after = replace(after, memory={**after.memory, BORROWED: True})
     return motion, after
+
+
+def _apart(one: Motion, other: Motion) -> float:
+    """How far joints of two motions are from each other in their last frame (metres)."""
+    places = [motion.part(len(motion) - 1, len(motion)).joint_positions() for motion in (one, other)]
+    return float(np.linalg.norm(places[0] - places[1], axis=-1).max())
 
 
 def by_rules(motion: Motion, why: str) -> Motion:
