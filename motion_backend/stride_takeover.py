@@ -26,6 +26,12 @@ HALF_LIFE: Final = 0.09
 """Seconds in which what is left between two bodies is half gone: nothing of it is seen after 0.3 s."""
 ARMS_HALF_LIFE: Final = 0.2
 """The same of arms, where those of two bodies may be half a metre apart: in less they are flung."""
+LONGER: Final = (1.0, 1.5, 2.25, 3.4)
+"""Times as long as that where a joint would be flung."""
+FLUNG: Final = 0.8
+"""Metres a second from frame to frame by which a joint may change its speed at a seam: half of what jumps."""
+ONSET: Final = 3
+"""Frames in which what dies away does so fastest."""
 STEP_ON: Final = 1.5
 """Steps from where a body is, as a foot of it comes down, to where the other one will."""
 LONGEST: Final = 0.52
@@ -157,8 +163,26 @@ def _ahead(pelvis: Array) -> Array:
 def joined(history: History, motion: Motion, half_life: float = HALF_LIFE, of_arms: float | None = None) -> Motion:
     """A motion that begins as the frames before it ended, in place and in speed; what it is off dies away.
 
-    In `half_life` seconds half of it is gone; of arms, which hang free and may be off by much, in `of_arms`.
+    In `half_life` seconds half of it is gone; of arms, which hang free and may be off by much, in `of_arms`. Where a
+    joint would be flung at that, it takes longer.
     """
+    for longer in LONGER:
+        found = joined_within(history, motion, longer * half_life, longer * (half_life if of_arms is None else of_arms))
+        if _flung(history, found) <= FLUNG:
+            break
+    return found
+
+
+def _flung(history: History, motion: Motion) -> float:
+    """By how many metres a second the fastest joint changes its speed from frame to frame as a motion begins."""
+    roots = np.concatenate([history.root_positions[-2:], motion.root_positions[:ONSET]])
+    local = np.concatenate([history.local_rotations[-2:], motion.local_rotations[:ONSET]])
+    places = motion.skeleton.forward_kinematics(roots, local)[0].astype(np.float64)
+    return float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max(initial=0.0)) * FPS
+
+
+def joined_within(history: History, motion: Motion, half_life: float, of_arms: float) -> Motion:
+    """The same in just these times, which a foot that has to land has no more of."""
     roots, local = history.root_positions[-2:], history.local_rotations[-2:]
     to, turned = motion.root_positions[:2].astype(np.float64), motion.local_rotations[:2].astype(np.float64)
     if len(roots) < 2 or len(to) < 2:
@@ -172,7 +196,7 @@ def joined(history: History, motion: Motion, half_life: float = HALF_LIFE, of_ar
     apart = rotations.quat_to_rotvec(rotations.compose(local[1], rotations.inverse(before)))
     spun = rotations.quat_to_rotvec(rotations.compose(local[1], rotations.inverse(local[0])))
     lives = np.full((len(apart), 1), half_life)
-    lives[_ARMS] = half_life if of_arms is None else of_arms
+    lives[_ARMS] = of_arms
     turns = _dying_away(apart, FPS * (spun - spin), lives, seconds[..., None])
     eased = rotations.compose(rotations.rotvec_to_quat(turns), motion.local_rotations.astype(np.float64))
     return replace(

@@ -36,8 +36,8 @@ SMOOTH: Final = 6.0
 """Width of the bell (frames) that takes a body's sway out of its way."""
 AHEAD: Final = np.radians(45.0)
 """Who moves farther from where he faces does not walk ahead."""
-STARTED, STOPPING = 0.4, 0.7
-"""Of the fastest pace of a walk: from the first on it has been started, below the second it is being stopped."""
+FULL: Final = 0.7
+"""Of the fastest pace of a walk: below it is being started or stopped. Who takes over in a start flings its foot."""
 SHORTEST: Final = 24
 """Frames that are worth a generator's."""
 BEND: Final = 2.0
@@ -52,6 +52,8 @@ OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
 PASSES, BY = 0.2, 10
 """Metres from a place within which it is passed by, and frames in which that was just now."""
+BEYOND: Final = 20
+"""Frames that are made beyond such a place, so that a heel comes down by it: a step has some 16."""
 DEEPER: Final = 0.02
 """Metres by which a generator's body may be deeper in furniture than the procedural one."""
 CARRIAGE_S: Final = 0.5
@@ -65,6 +67,8 @@ OWN: Final = frozenset({"speed", "bearing", "character", "release", "stride", "r
 """What a caption may say of a walk that is still a plain one."""
 BORROWED: Final = "borrowed"
 """What a state remembers whose stride was another body's than the one that remembers it."""
+ITSELF: Final = 0.002
+"""Metres that its joints may be off for a body to be itself again."""
 HURRY: Final = (0.7, 1.4)
 """How much slower and faster than the procedural body a generator may go that has a pace of its own."""
 MOST, AGAIN = 5, 15
@@ -135,11 +139,11 @@ class WalkDriver:
         """The first frames of the procedural body's walk by the follower, or by itself."""
         if self.follower is None or not frames:
             return by_rules(walk.ruled.part(0, frames), why)
-        return self.follower.act(walk.home, walk.part, walk.ruled, walk.state, frames)
+        return self.follower.act(walk.home, walk.part, walk.onward, walk.state, frames)
 
     def _rest(self, walk: _Walk, why: str) -> tuple[Motion, BodyState]:
         """What is left of a walk once no stretch of it is the generator's any more, and the state after it."""
-        motion = self._acted(walk, len(walk.ruled), why)
+        motion = self._acted(walk, len(walk.onward), why)
         if not walk.ruled.completed or all(phase.backend == ProceduralBackend.name for phase in motion.phases):
             return by_rules(walk.ruled, walk.ruled.reason or _told(motion) or why), walk.after
         if walk.stride is None:
@@ -206,6 +210,14 @@ class _Walk:
         return Stride.from_lists(told) if told else None
 
     @cached_property
+    def onward(self) -> Motion:
+        """What the procedural body did, and where it does not stop a step and a bit of how it goes on."""
+        if self.stride is None or not self.upcoming:
+            return self.ruled
+        later, _ = ProceduralBackend().advance(self.home, self.upcoming[0], self.upcoming[1:], self.after)
+        return _led_on(self.ruled, later.part(0, min(BEYOND, len(later))))
+
+    @cached_property
     def way(self) -> Array:
         """Where its pelvis goes, without its sway, and on from there where it does not stop. (N, 2)."""
         places = _way_of(self.ruled)
@@ -252,9 +264,17 @@ def ruled(home: Home, part: Part, upcoming: Sequence[Part], state: BodyState) ->
     """A part as the procedural body does it from here on, whoever moved the body before."""
     motion, after = ProceduralBackend().advance(home, part, upcoming, state)
     if state.memory.get(BORROWED) and len(motion):
-        motion = joined(state.history, motion, of_arms=ARMS_HALF_LIFE)
+        own, motion = motion, joined(state.history, motion, of_arms=ARMS_HALF_LIFE)
         after = replace(after, history=state.history.followed_by(motion))
+        if _apart(own, motion) > ITSELF:
+            after = replace(after, memory={**after.memory, BORROWED: True})
     return motion, after
+
+
+def _apart(one: Motion, other: Motion) -> float:
+    """How far joints of two motions are from each other in their last frame (metres)."""
+    places = [motion.part(len(motion) - 1, len(motion)).joint_positions() for motion in (one, other)]
+    return float(np.linalg.norm(places[0] - places[1], axis=-1).max())
 
 
 def by_rules(motion: Motion, why: str) -> Motion:
@@ -287,7 +307,7 @@ def plain_stretch(motion: Motion, slowest: float, least: int = 0) -> tuple[int, 
     facing = _smooth(np.unwrap(yaw_of(motion.local_rotations[:, 0].astype(np.float64))))
     ahead = np.abs(rotations.wrap(np.arctan2(steps[:, 0], steps[:, 1]) - facing)) < AHEAD
     scale = motion.skeleton.scale
-    walks = ahead & (pace > max(slowest * scale, STARTED * float(pace.max()))) & (pace < FASTEST * scale)
+    walks = ahead & (pace > max(slowest * scale, FULL * float(pace.max()))) & (pace < FASTEST * scale)
     yaw, gone = np.unwrap(np.arctan2(steps[:, 0], steps[:, 1])), np.cumsum(pace) / FPS
     reach = FPS // 3
     turned = np.abs(yaw[2 * reach :] - yaw[: -2 * reach]) / np.maximum(gone[2 * reach :] - gone[: -2 * reach], SLOWEST)
@@ -301,7 +321,7 @@ def plain_stretch(motion: Motion, slowest: float, least: int = 0) -> tuple[int, 
     if not len(runs):
         return None
     start, stop = runs[int(np.argmax(runs[:, 1] - runs[:, 0]))].tolist()
-    quick = np.flatnonzero(pace[start:stop] > STOPPING * float(pace.max()))
+    quick = np.flatnonzero(pace[start:stop] > FULL * float(pace.max()))
     stop = start + int(quick.max(initial=-1)) + 1
     return (start, stop) if stop - start >= SHORTEST else None
 
@@ -323,6 +343,14 @@ def _hastened(places: Array, step: float) -> Array:
         return places
     at = np.arange(0.0, len(places) - 1, step)
     return np.stack([np.interp(at, np.arange(len(places)), places[:, axis]) for axis in (0, 1)], axis=1)
+
+
+def _led_on(motion: Motion, later: Motion) -> Motion:
+    """A motion whose last phase lasts as long as the frames that are put after it."""
+    *before, last = motion.phases
+    whole = join([motion, replace(later, actions=np.full(len(later), motion.actions[-1], dtype=np.int32))])
+    told = {"completed": motion.completed, "reason": motion.reason, "goals": motion.goals, "notes": motion.notes}
+    return replace(whole, phases=(*before, replace(last, stop=len(whole))), **told)
 
 
 def _told(motion: Motion) -> str:

@@ -16,7 +16,7 @@ from motion_backend.diffusion.sampler import Sampler
 from motion_backend.motion import Motion
 from motion_backend.rotations import Array
 from motion_backend.skeleton import build_skeleton
-from motion_backend.stride_takeover import joined
+from motion_backend.stride_takeover import joined_within
 from motion_backend.walk_generator import Ahead, Frames, Walker
 
 CAPTION: Final = "a person walks"
@@ -96,7 +96,7 @@ def _eased(past: Frames, found: Frames) -> Frames:
         found.root.astype(np.float32), found.local.astype(np.float32), np.zeros((len(found), 4), np.float32),
         build_skeleton(), np.zeros(len(found), np.int32),
     )  # fmt: skip
-    eased = joined(History.of(past.root, past.local, still), motion, SETTLED, SETTLED)
+    eased = joined_within(History.of(past.root, past.local, still), motion, SETTLED, SETTLED)
     return Frames(eased.root_positions.astype(np.float64), eased.local_rotations.astype(np.float64))
 
 

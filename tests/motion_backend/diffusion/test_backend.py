@@ -17,8 +17,12 @@ from motion_backend.diffusion.backend import WEIGHTS, DiffusionBackend, walking
 from motion_backend.diffusion.checkpoint import CheckpointError
 from motion_backend.diffusion.learned_walker import LearnedGait
 from motion_backend.director import Director, shares
+from motion_backend.metrics.joint_trajectories import Kinematics
+from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
 from motion_backend.procedural.backend import ProceduralBackend
+from motion_backend.rotations import Array
+from motion_backend.scene import scene_of
 from motion_backend.skeleton import build_skeleton
 from motion_backend.walk_generator import Ahead, Frames, Way, follow
 
@@ -90,6 +94,28 @@ def test_who_takes_over_from_a_body_that_stands_flings_no_foot() -> None:
         assert np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max() * 30 < FLUNG, gait
 
 
+def test_a_foot_that_swings_passes_over_the_floor_and_not_along_it() -> None:
+    """As seldom as people's: at a walking pace and at one that is slower than any that was recorded."""
+    past, skeleton = standing_at_the_origin(), build_skeleton()
+    for speed in (0.5, 1.2):
+        way = straight(past, speed)
+        walk = follow(LearnedGait(walking(), gait=4).begin(past, np.random.default_rng(4)), past, way)
+        whole = past.then(walk)
+        motion = to_motion(*held(whole.root, whole.local, skeleton, len(past)))
+        soles = Kinematics.of(motion).soles
+        speeds = np.linalg.norm(np.gradient(soles[..., [0, 2]], axis=0) * 30, axis=-1).min(axis=2)
+        swinging = speeds > 0.6
+        brushing = swinging & (soles[..., 1].min(axis=2) < 0.003)
+        assert swinging.any()
+        assert brushing.sum() < 0.035 * swinging.sum(), speed
+
+
+def to_motion(root: Array, local: Array, contacts: Array) -> Motion:
+    """Frames of a body as motion."""
+    values = (root.astype(np.float32), local.astype(np.float32), contacts.astype(np.float32))
+    return Motion(*values, build_skeleton(), np.zeros(len(root), np.int32))
+
+
 def test_two_bodies_walk_in_two_gaits() -> None:
     _, one, _ = walked(0)
     _, other, _ = walked(3)
@@ -116,6 +142,22 @@ def test_the_backend_walks_the_ways_of_a_home_and_says_what_it_made() -> None:
     assert set(made) <= {"diffusion", "procedural"}
     assert made["diffusion"] > 0.5
     assert all(phase.fallback for phase in motion.phases if phase.backend == "procedural")
+
+
+def test_a_walk_that_goes_on_is_the_models_to_where_a_heel_comes_down_by_its_place() -> None:
+    home, director = small_home(), Director(DiffusionBackend(), ProceduralBackend())
+    caption = "walk while talking on the phone with the left hand"
+    for seed in (4, 5):
+        rng = np.random.default_rng(seed)
+        goals = [scene_of(home).walkable.random_point(rng, 0) for _ in range(3)]
+        actions = [
+            Action(Skill.LOCO, caption, Emotion.NEUTRAL, goal=goal, keyframe=at) for at, goal in enumerate(goals)
+        ]
+        made = [motion for motion, _ in director.play(home, actions, director.begin(home, Character(), seed))]
+        assert all(shares(motion) == {"diffusion": 1.0} for motion in made)
+        for motion, goal in zip(made, goals, strict=True):
+            away = np.linalg.norm(motion.root_positions[:, [0, 2]] - np.array(goal), axis=1)
+            assert away.min() < 0.2
 
 
 @pytest.mark.parametrize("fault", ["missing", "cut off"])
