@@ -13,7 +13,7 @@ from planner_service.scripts.acted_beats import RESTS
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.language import ANOTHER, ENGLISH, foreign_language, language_of
-from planner_service.themes.lexicon import grammar, is_known_word, lemma_of
+from planner_service.themes.lexicon import grammar, is_known_word, lemma_of, participle
 from planner_service.themes.memories import RECALLING, recalled_in
 from planner_service.themes.no_deeds import tells_no_deed
 from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
@@ -273,6 +273,8 @@ def is_feeling(clause: Clause) -> bool:
         return any(feeling.sure or says_how for feeling in feelings(clause.text))
     if not words["posed"].isdisjoint(clause.lemmas):
         return False
+    if clause.text.lower() == participle(clause.verb):  # "sinks down, exhausted"
+        return bool(feelings(clause.text))
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
     if head_of(clause.subject).lower() in words["body"]:  # "her heart is in her mouth"
         return bool(feelings(f"{clause.subject} {clause.text}"))

@@ -9,6 +9,7 @@ from functools import cache
 from itertools import pairwise
 from typing import Final
 
+from planner_service.scripts.emotions import feelings
 from planner_service.themes.lexicon import (
     grammar,
     is_adjective,
@@ -241,7 +242,7 @@ def _opens(word: str, base: str, after: str) -> bool:
         return False  # "results unopened in her bag"
     if is_third_person(word) or word != base:
         names = is_noun(word) and bool(verb_of(after)) and not (is_noun(after) or after.endswith("ing"))
-        return not names or is_adjective(after)
+        return not names or is_adjective(after) or bool(feelings(after))  # "sinks exhausted into it"
     return not is_noun(word) or (_goes_on(after) and bool(after))
 
 
