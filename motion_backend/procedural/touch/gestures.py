@@ -304,6 +304,13 @@ def _is_free_of_beat(doing: str, seconds: float) -> bool:
     return not move.keys or (len(move.times(seconds)) > 1 and not any(key.steps for key in move.keys))
 
 
+def leaves_an_arm(doing: str) -> bool:
+    """Whether it is nothing that both arms do."""
+    move = gesture_table().moves.get(doing)
+    one_hand = move is not None and all(row.hand in ("right", "raised") for row in move.hands)
+    return move is not None and one_hand and not any(key.arms[0] for key in move.keys)
+
+
 def room_for(doing: str) -> tuple[float, bool]:
     """How much free floor about a standing body it takes (metres at 1.70 m), and whether that is gone to."""
     move = gesture_table().moves.get(doing, Move())
