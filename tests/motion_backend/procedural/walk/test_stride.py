@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import json
 from functools import cache
 
@@ -263,8 +265,8 @@ def test_arms_held_out_come_down_where_a_wall_is_and_nowhere_else() -> None:
     assert beside[1].min() == pytest.approx(free[1].min(), abs=0.02)
 
 
-def test_who_dances_goes_on_while_turning_round() -> None:
-    style = walk_style(Emotion.NEUTRAL, "dancing steps, arms swinging")
+def test_who_spins_on_the_way_goes_on_while_turning_round() -> None:
+    style = replace(walk_style(Emotion.NEUTRAL, "walk"), spin=1.0, speed=0.9)
     way, start = np.array([[0.0, 0.0], [0.0, 4.0]]), standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
     went, *_ = walk_on(start, way, None, style, SKELETON, np.random.default_rng(0))
     yaw = np.unwrap(2 * np.arctan2(went.hips[:, 1], went.hips[:, 3]))
