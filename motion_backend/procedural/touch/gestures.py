@@ -348,10 +348,8 @@ def _through_keys(held: Pose, time: Array, rows: Move, spread: float) -> Pose:
     """T frames of a held pose that go through the keys and back, as often as there is time for."""
     base, at = held.at(0), rows.times(float(time[-1]))
     keys = [MoveKey(at_share=0.0), *rows.keys]
-    poses, turned = (
-        [key.pose(base, spread) for key in keys],
-        np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys]),
-    )
+    poses = [key.pose(base, spread) for key in keys]
+    turned = np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys])
     clock = np.arange(1, len(held) + 1) / FPS
     knots = np.interp(np.append(at, time[-1]), [0.0, *time], [0.0, *clock])
     way = interpolate(knots.tolist(), [*poses * len(at), base], FPS)

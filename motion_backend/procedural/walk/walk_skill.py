@@ -177,7 +177,8 @@ def _take_up(body: Body, style: Walk) -> None:
     """Lift what is used on the way before one, and look at it for a moment."""
     body.enter(PhaseKind.STAND)
     wrists, elbows = arm_arrays(*style.begins)
-    looks = replace(body.pose, arms=wrists, elbows=elbows, head=bend(LOOKS_DOWN), reaching=np.zeros(2), pressing=np.zeros(2))
+    free = {"reaching": np.zeros(2), "pressing": np.zeros(2)}
+    looks = replace(body.pose, arms=wrists, elbows=elbows, head=bend(LOOKS_DOWN), **free)
     body.add(interpolate([0.0, *(one / style.bearing.tempo for one in TAKES_UP)], [body.pose, looks, looks], FPS))
 
 

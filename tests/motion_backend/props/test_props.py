@@ -142,7 +142,7 @@ def test_both_hands_hold_nothing_before_they_are_lifted_nor_after_they_are_down(
 
 
 @for_each(("skill", "caption"), HOLDING)
-def test_what_one_hand_holds_or_stands_or_lies_there_comes_and_goes_with_its_keyframe(skill: Skill, caption: str) -> None:
+def test_what_one_hand_holds_or_stands_or_lies_comes_and_goes_with_its_keyframe(skill: Skill, caption: str) -> None:
     held, done = held_in(skill, caption), acted(skill, caption)
     assert held is not None
     own = np.flatnonzero(done.motion.actions == done.actions[-1].keyframe)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -263,8 +264,8 @@ def test_arms_held_out_come_down_where_a_wall_is_and_nowhere_else() -> None:
     assert beside[1].min() == pytest.approx(free[1].min(), abs=0.02)
 
 
-def test_who_dances_goes_on_while_turning_round() -> None:
-    style = walk_style(Emotion.NEUTRAL, "dancing steps, arms swinging")
+def test_who_spins_on_the_way_goes_on_while_turning_round() -> None:
+    style = replace(walk_style(Emotion.NEUTRAL, "walk"), spin=1.0, speed=0.9)
     way, start = np.array([[0.0, 0.0], [0.0, 4.0]]), standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
     went, *_ = walk_on(start, way, None, style, SKELETON, np.random.default_rng(0))
     yaw = np.unwrap(2 * np.arctan2(went.hips[:, 1], went.hips[:, 3]))
