@@ -97,8 +97,8 @@ LOOKS_DOWN: Final = 0.5
 """How far the head is bent for that (radians)."""
 LEGS = ("pelvis", "hips", "ankles", "feet", "toes")
 """The handles of who stands."""
-LEGS_DO = 1e-6
-"""Legs do something that moves these by more than this."""
+LEGS_DO = {"pelvis": 0.06, "hips": 0.12} | dict.fromkeys(("ankles", "feet", "toes"), 1e-6)
+"""Legs do something of their own that moves these by more than this: bobbing knees leave the weight free to go."""
 ROOM_TO_STEP = 0.08
 """What is free about who steps on the spot, beyond what the body needs (metres)."""
 QUICK, RUNS = 1.7, 2.0
@@ -355,7 +355,7 @@ def _idle(body: Body, seconds: float, restless: float) -> Pose:
 def _from_leg_to_leg(body: Body, held: Pose, done: Pose, restless: float, goes_on: bool = False) -> Pose:
     """Frames of who does something where it stands, its weight on one leg and then on the other; as they were where the
     legs do something as well, or a hand lies on a thing."""
-    busy = any(np.abs(getattr(done, name) - getattr(held, name)).max() > LEGS_DO for name in LEGS)
+    busy = any(np.abs(getattr(done, name) - getattr(held, name)).max() > LEGS_DO[name] for name in LEGS)
     if busy or done.reaching.any() or not done.planted.all():
         return done
     room = _free(body, body.place) >= ROOM_TO_STEP
