@@ -273,3 +273,16 @@ def test_who_spins_on_the_way_goes_on_while_turning_round() -> None:
     assert yaw[-1] - yaw[0] == pytest.approx(2 * np.pi, abs=0.3)
     assert went.pelvis[round_it][-1, 2] - went.pelvis[round_it][0, 2] > 0.5
     assert went.pelvis[-1, 2] == pytest.approx(4.0, abs=0.1)
+
+
+def test_into_a_turn_the_head_leads_the_chest_and_the_chest_the_pelvis() -> None:
+    style = walk_style(Emotion.NEUTRAL, STEADY)
+    way, start = np.array([[0.0, 0.0], [0.0, 2.0], [2.5, 2.0]]), standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+    went, *_ = walk_on(start, way, None, style, SKELETON, np.random.default_rng(0))
+    _, world = SKELETON.forward_kinematics(*solve(went, SKELETON))
+    ahead = rotations.rotate(
+        world[:, [INDEX[name] for name in ("head", "spine3", "pelvis")]], np.array([0.0, 0.0, 1.0])
+    )
+    half = [int(np.argmax(one > np.pi / 4)) for one in np.arctan2(ahead[..., 0], ahead[..., 2]).T]
+    assert half[0] + 2 < half[1] < half[2]
+    assert half[2] - half[0] > 0.2 * FPS
