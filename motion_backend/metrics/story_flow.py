@@ -160,7 +160,8 @@ def touch_waits(body: Kinematics, actions: Sequence[Action], spans: Sequence[Spa
 
 
 def turning_on_the_spot(body: Kinematics) -> Share:
-    """Radians that the pelvis turns while it is slower than `FLOWS`, of all that it turns while standing or walking."""
+    """Radians that the pelvis turns while it is slower than `FLOWS`, of all that it turns on its way: who dances or
+    sweeps where they stand is to turn there."""
     if len(body.motion) < 2:
         return Share(0.0, 0.0)
     from scipy.ndimage import gaussian_filter1d
@@ -169,15 +170,15 @@ def turning_on_the_spot(body: Kinematics) -> Share:
     sigma = SMOOTHED * body.motion.fps
     yaw = gaussian_filter1d(np.unwrap(np.arctan2(ahead[:, 0], ahead[:, 2])), sigma, mode="nearest")
     place = gaussian_filter1d(body.positions[:, 0, [0, 2]], sigma, axis=0, mode="nearest")
-    turned = np.abs(np.diff(yaw)) * _upright(body)[1:]
+    turned = np.abs(np.diff(yaw)) * _on_its_way(body)[1:]
     slow = np.linalg.norm(np.diff(place, axis=0), axis=1) * body.motion.fps < FLOWS
     return Share(float(turned[slow].sum()), float(turned.sum()))
 
 
-def _upright(body: Kinematics) -> NDArray[np.bool_]:
-    """Frames of no part that rests, goes down or comes up. (T,)."""
+def _on_its_way(body: Kinematics) -> NDArray[np.bool_]:
+    """Frames of no part that stays where it stands, rests, goes down or comes up. (T,)."""
     found = np.ones(len(body.motion), dtype=bool)
     for phase in body.motion.phases:
-        if phase.kind in RESTING or phase.kind is PhaseKind.STANDUP:
+        if phase.kind in RESTING or phase.kind in (PhaseKind.STANDUP, PhaseKind.STAND):
             found[phase.start : phase.stop] = False
     return found

@@ -99,8 +99,17 @@ class Idle:
     waits_usual_share: float
     """Of the times that one stands about, arms are as the mood has them; else as one of `waits`."""
     waits: tuple[tuple[str, str], ...]
+    idle_arms: tuple[str, ...]
+    """Where the other arm is of who does something with one hand."""
     shift: Shift
     hands: SlidingHands
+
+    def beside(self, arms: tuple[str, str], rng: np.random.Generator) -> tuple[str, str]:
+        """The same arm poses, but that one arm does not hang while the other does something."""
+        if arms.count("hang") != 1:
+            return arms
+        left, right = (self.idle_arms[rng.integers(len(self.idle_arms))] if arm == "hang" else arm for arm in arms)
+        return left, right
 
     def waiting(self, usual: tuple[str, str], rng: np.random.Generator) -> tuple[str, str]:
         """How arms are held by who stands about this time: names of arm poses."""

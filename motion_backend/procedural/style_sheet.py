@@ -1,7 +1,8 @@
 """Styles as data: what an emotion, and the words of a caption, change of a way to walk, sit or lie.
 
 A sheet is a table with one section an emotion and one row a pattern of words, which may count in some `moods` alone.
-Its keys are the fields of the style's class with their units behind them (`lean_deg`); a row names only what it changes.
+Its keys are the fields of the style's class with their units behind them (`lean_deg`); a row names only what it
+changes.
 """
 
 from __future__ import annotations

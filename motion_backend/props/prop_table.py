@@ -17,8 +17,9 @@ Direction = Literal[
     "face", "mouth", "scalp", "jaw", "crown", "nose", "inward",
 ]  # fmt: skip
 """Of the world (up, down), of the chest (ahead, left, and up the trunk), from the right to the left hand (across), of
-the hand, or of both between them (fingers, palm, thumb), from there to the eyes, to the mouth and to the middle of the skull (scalp), of the head: up
-(crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the side of that hand (inward)."""
+the hand, or of both between them (fingers, palm, thumb), from there to the eyes, to the mouth and to the middle of
+the skull (scalp), of the head: up (crown), ahead (nose), from the chin past the ear (jaw), and to its middle from the
+side of that hand (inward)."""
 
 
 @table

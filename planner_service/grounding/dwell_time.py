@@ -23,8 +23,8 @@ STANDS, WAITS = "stand still", "stand still, waiting"
 
 
 def lingering(action: Action, said: str) -> Action:
-    """The action, held longer where the theme's words for it say that it lasts, and done as who waits where they say so;
-    a walk or a touch is not."""
+    """The action, held longer where the theme's words for it say that it lasts, and done as who waits where they say
+    so; a walk or a touch is not."""
     if not (_WAITS.search(said) or _LASTS.search(said)):
         return action
     if _WAITS.search(said) and action.caption == STANDS and not _STILL.search(said):

@@ -46,6 +46,8 @@ ON_ARM, ON_HANDS = 0.05, 0.05
 """How high a head lies on an arm rather than on a pillow, or on hands upon it (metres at 1.70 m)."""
 NARROW: Final = 0.25
 """With so much room from the middle to either side one lies straight along (metres)."""
+HELD: Final = 0.4
+"""An elbow whose hand is at the head is elsewhere by so large a share only."""
 OVER_TRUNK: Final = 0.15
 """A wrist nearer than this to the middle of the body is over the trunk (metres at 1.70 m)."""
 STRETCHED: Final = 0.91
@@ -199,9 +201,10 @@ def _on_the_back(pose: Pose, bed: Bed, style: Lying, skeleton: Skeleton, keys: L
     resting = bed.surface + under + SKULL_RADIUS * skeleton.scale
     nod = float(NODS[int(np.argmin(np.abs(heights - resting)))]) + style.nod
     # A head that hands go with stays between them.
-    turned = 0.0 if left.with_head or right.with_head or style.nod else style.own.head_turn
+    kept = left.with_head or right.with_head
+    turned = 0.0 if kept or style.nod else style.own.head_turn
     turn = style.turn * (1.0 if turned >= 0 else -1.0) + turned
-    pose = replace(pose, head=bend(nod, turn=turn, side=style.own.head_tilt))
+    pose = replace(pose, head=bend(nod, turn=turn, side=0.0 if kept else style.own.head_tilt))
     return hands_at_rest(pose, (_moved(left, style.own, 0), _moved(right, style.own, 1)), skeleton)
 
 
@@ -214,11 +217,11 @@ def _askew(hips: Array, bed: Bed, own: OwnWay) -> Array:
 def _moved(rest: RestingHand, own: OwnWay, index: int) -> RestingHand:
     """The hand where it lies this time, over the same surface."""
     out, up, ahead = rest.wrist_m
-    # Under a head and on a face there is no more room, and a trunk falls off to its sides.
-    size = 0.4 if rest.with_head or (out < OVER_TRUNK and ahead > 0) else 1.0
+    # At a head there is no more room, and a trunk falls off to its sides.
+    size = 0.0 if rest.with_head else 0.4 if out < OVER_TRUNK and ahead > 0 else 1.0
     across, along = size * float(own.hand_across[index]), size * float(own.hand_along[index])
     aside, towards_head, forwards = rest.elbow_direction
-    elbow = (aside, towards_head + float(own.elbow_up[index]), forwards)
+    elbow = (aside, towards_head + (HELD if rest.with_head else 1.0) * float(own.elbow_up[index]), forwards)
     return replace(rest, wrist_m=(out + across, up + along, ahead), elbow_direction=elbow)
 
 

@@ -304,6 +304,13 @@ def _is_free_of_beat(doing: str, seconds: float) -> bool:
     return not move.keys or (len(move.times(seconds)) > 1 and not any(key.steps for key in move.keys))
 
 
+def leaves_an_arm(doing: str) -> bool:
+    """Whether it is nothing that both arms do."""
+    move = gesture_table().moves.get(doing)
+    one_hand = move is not None and all(row.hand in ("right", "raised") for row in move.hands)
+    return move is not None and one_hand and not any(key.arms[0] for key in move.keys)
+
+
 def room_for(doing: str) -> tuple[float, bool]:
     """How much free floor about a standing body it takes (metres at 1.70 m), and whether that is gone to."""
     move = gesture_table().moves.get(doing, Move())
@@ -341,10 +348,8 @@ def _through_keys(held: Pose, time: Array, rows: Move, spread: float) -> Pose:
     """T frames of a held pose that go through the keys and back, as often as there is time for."""
     base, at = held.at(0), rows.times(float(time[-1]))
     keys = [MoveKey(at_share=0.0), *rows.keys]
-    poses, turned = (
-        [key.pose(base, spread) for key in keys],
-        np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys]),
-    )
+    poses = [key.pose(base, spread) for key in keys]
+    turned = np.array([[key.turn_rad, *key.feet_turn_rad] for key in keys])
     clock = np.arange(1, len(held) + 1) / FPS
     knots = np.interp(np.append(at, time[-1]), [0.0, *time], [0.0, *clock])
     way = interpolate(knots.tolist(), [*poses * len(at), base], FPS)

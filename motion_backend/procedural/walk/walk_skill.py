@@ -21,7 +21,7 @@ from motion_backend.procedural.contrapposto import contrapposto
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
 from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle, idle_table
 from motion_backend.procedural.pose import Pose, interpolate, settle_from
-from motion_backend.procedural.touch.gestures import gesture, room_for
+from motion_backend.procedural.touch.gestures import gesture, leaves_an_arm, room_for
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
@@ -97,8 +97,8 @@ LOOKS_DOWN: Final = 0.5
 """How far the head is bent for that (radians)."""
 LEGS = ("pelvis", "hips", "ankles", "feet", "toes")
 """The handles of who stands."""
-LEGS_DO = 1e-6
-"""Legs do something that moves these by more than this."""
+LEGS_DO = {"pelvis": 0.06, "hips": 0.12} | dict.fromkeys(("ankles", "feet", "toes"), 1e-6)
+"""Legs do something of their own that moves these by more than this: bobbing knees leave the weight free to go."""
 ROOM_TO_STEP = 0.08
 """What is free about who steps on the spot, beyond what the body needs (metres)."""
 QUICK, RUNS = 1.7, 2.0
@@ -177,7 +177,8 @@ def _take_up(body: Body, style: Walk) -> None:
     """Lift what is used on the way before one, and look at it for a moment."""
     body.enter(PhaseKind.STAND)
     wrists, elbows = arm_arrays(*style.begins)
-    looks = replace(body.pose, arms=wrists, elbows=elbows, head=bend(LOOKS_DOWN), reaching=np.zeros(2), pressing=np.zeros(2))
+    free = {"reaching": np.zeros(2), "pressing": np.zeros(2)}
+    looks = replace(body.pose, arms=wrists, elbows=elbows, head=bend(LOOKS_DOWN), **free)
     body.add(interpolate([0.0, *(one / style.bearing.tempo for one in TAKES_UP)], [body.pose, looks, looks], FPS))
 
 
@@ -316,10 +317,10 @@ def stay(body: Body, part: Part) -> None:
     restless = bearing.restless
     style = walk_style(action.emotion, action.caption if action.skill is Skill.LOCO else "walk")
     does_it = style.stays > 0 and bool(style.doing)
+    # Who does this does it in one way, and another thing or another person otherwise.
+    habit = np.random.default_rng((body.seed, crc32(action.caption.encode())))
     if action.stands and not does_it:
         said = style.bearing.waits
-        # Who does this does it in one way, and another thing or another person otherwise.
-        habit = np.random.default_rng((body.seed, crc32(action.caption.encode())))
         waits = said if said != bearing.waits else idle_table().waiting(said, habit)
         _stand_about(body, part.hold, replace(bearing, waits=waits))
         return
@@ -336,12 +337,13 @@ def stay(body: Body, part: Part) -> None:
         go(body, *_open_floor(body, room), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
     spread = min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0
-    bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, style.bearing.arms))
+    arms = idle_table().beside(style.bearing.arms, habit) if leaves_an_arm(style.doing) else style.bearing.arms
+    bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))
     body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(body.pose, **_carriage(bearing))], FPS))
     held = _idle(body, part.hold, restless)
     body.add(_from_leg_to_leg(body, held, gesture(held, style.doing, spread, body.rng), restless))
-    if style.bearing.arms != ("hang", "hang"):
+    if arms != ("hang", "hang"):
         stands = {name: getattr(body.pose, name) for name in LEGS}
         body.add(interpolate([0.0, STAYING / bearing.tempo], [body.pose, replace(at_ease, **stands)], FPS))
 
@@ -353,7 +355,7 @@ def _idle(body: Body, seconds: float, restless: float) -> Pose:
 def _from_leg_to_leg(body: Body, held: Pose, done: Pose, restless: float, goes_on: bool = False) -> Pose:
     """Frames of who does something where it stands, its weight on one leg and then on the other; as they were where the
     legs do something as well, or a hand lies on a thing."""
-    busy = any(np.abs(getattr(done, name) - getattr(held, name)).max() > LEGS_DO for name in LEGS)
+    busy = any(np.abs(getattr(done, name) - getattr(held, name)).max() > LEGS_DO[name] for name in LEGS)
     if busy or done.reaching.any() or not done.planted.all():
         return done
     room = _free(body, body.place) >= ROOM_TO_STEP

@@ -37,7 +37,8 @@ from motion_backend.skeleton import build_skeleton
 from scene_graphs.data_tables import read_table
 
 TOUCH = touch_keys()
-DEEDS = ["", *(row.changes["doing"] for row in read_style_sheet("touch.toml", Handled).captions if "doing" in row.changes)]
+HANDLINGS = [row.changes for row in read_style_sheet("touch.toml", Handled).captions]
+DEEDS = ["", *(changes["doing"] for changes in HANDLINGS if "doing" in changes)]
 TABLES = {
     "touch": TOUCH, "gestures": gesture_table(), "idle": idle_table(), "carriage": carriage(), "feet": foot_table(),
     "steps": footstep_table(), "cadence": cadence(), "arms": arm_table(), "pelvis": pelvis_table(),

@@ -66,7 +66,8 @@ def test_all_that_rows_name_is_known() -> None:
 
 
 def test_a_row_of_a_mood_counts_in_that_mood_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    text = "[[captions]]\nwords = 'hop'\nheight_m = 0.2\n\n[[captions]]\nwords = 'hop'\nmoods = [\"angry\"]\nheight_m = 0.4\n"
+    row = "[[captions]]\nwords = 'hop'\n"
+    text = f'{row}height_m = 0.2\n\n{row}moods = ["angry"]\nheight_m = 0.4\n'
     sheet = sheet_of(text, tmp_path, monkeypatch)
     assert sheet.of_caption("hop", Emotion.ANGRY) == {"height": 0.4}
     assert sheet.of_caption("hop", Emotion.SAD) == sheet.of_caption("hop") == {"height": 0.2}

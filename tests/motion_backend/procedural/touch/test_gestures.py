@@ -40,7 +40,7 @@ SITTING = {
     "writing at the table, right hand moving": "write",
     "typing, both hands on the keyboard": "type",
     "playing a game, controller held in both hands": "game",
-    "talking on the phone with the left hand": "",
+    "talking on the phone with the left hand": "call_left",
     "drinking from a cup in the right hand": "drink",
     "eating at the table, right hand to the mouth": "eat",
     "listening to music, both hands at the ears": "music",
@@ -180,6 +180,17 @@ def test_who_does_something_on_the_spot_is_seen_to_do_it_and_ends_where_they_sto
     assert np.linalg.norm(feet[-1] - feet[0], axis=-1).max() < 0.04
     # Arms hang again, and the trunk is as it was.
     assert np.linalg.norm(joints[-1, [LEFT, RIGHT]] - joints[0, [LEFT, RIGHT]], axis=-1).max() < 0.12
+
+
+def test_who_waits_steps_away_and_back_and_looks_at_the_watch() -> None:
+    motion, joints = performed(Action(Skill.LOCO, "stand still, waiting", Emotion.NEUTRAL, hold=6.0, keyframe=1))
+    assert a_foot_bears(motion).all()
+    lifted = motion.contacts[:, :2].max(axis=1) == 0
+    assert np.count_nonzero(np.diff(lifted.astype(int)) == 1) >= 2  # the left foot, there and back
+    ankle = joints[:, INDEX["left_ankle"]]
+    assert np.linalg.norm(ankle - ankle[0], axis=1).max() > 0.08
+    watch = np.linalg.norm(joints[:, LEFT] - joints[:, INDEX["head"]], axis=1)
+    assert watch.min() < 0.5 < watch[0]
 
 
 def a_foot_bears(motion: Motion) -> Array:

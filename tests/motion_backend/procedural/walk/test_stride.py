@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -263,8 +264,8 @@ def test_arms_held_out_come_down_where_a_wall_is_and_nowhere_else() -> None:
     assert beside[1].min() == pytest.approx(free[1].min(), abs=0.02)
 
 
-def test_who_dances_goes_on_while_turning_round() -> None:
-    style = walk_style(Emotion.NEUTRAL, "dancing steps, arms swinging")
+def test_who_spins_on_the_way_goes_on_while_turning_round() -> None:
+    style = replace(walk_style(Emotion.NEUTRAL, "walk"), spin=1.0, speed=0.9)
     way, start = np.array([[0.0, 0.0], [0.0, 4.0]]), standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
     went, *_ = walk_on(start, way, None, style, SKELETON, np.random.default_rng(0))
     yaw = np.unwrap(2 * np.arctan2(went.hips[:, 1], went.hips[:, 3]))
@@ -272,3 +273,16 @@ def test_who_dances_goes_on_while_turning_round() -> None:
     assert yaw[-1] - yaw[0] == pytest.approx(2 * np.pi, abs=0.3)
     assert went.pelvis[round_it][-1, 2] - went.pelvis[round_it][0, 2] > 0.5
     assert went.pelvis[-1, 2] == pytest.approx(4.0, abs=0.1)
+
+
+def test_into_a_turn_the_head_leads_the_chest_and_the_chest_the_pelvis() -> None:
+    style = walk_style(Emotion.NEUTRAL, STEADY)
+    way, start = np.array([[0.0, 0.0], [0.0, 2.0], [2.5, 2.0]]), standing((0.0, 0.0), 0.0, Bearing(), SKELETON)
+    went, *_ = walk_on(start, way, None, style, SKELETON, np.random.default_rng(0))
+    _, world = SKELETON.forward_kinematics(*solve(went, SKELETON))
+    ahead = rotations.rotate(
+        world[:, [INDEX[name] for name in ("head", "spine3", "pelvis")]], np.array([0.0, 0.0, 1.0])
+    )
+    half = [int(np.argmax(one > np.pi / 4)) for one in np.arctan2(ahead[..., 0], ahead[..., 2]).T]
+    assert half[0] + 2 < half[1] < half[2]
+    assert half[2] - half[0] > 0.2 * FPS
