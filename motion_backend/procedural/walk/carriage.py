@@ -73,6 +73,11 @@ class Lean:
     """and how much more in walking faster than"""
     fast_from_mps: float
     fast_within_mps: float
+    falls_rad_per_mps: float
+    """Who sets out falls forward before the step, for so much speed as is still to come within"""
+    falls_ahead_s: float
+    falls_within_m: float
+    """and less and less over so much of the way (at 1.70 m)."""
     straightens_share: float
     """A bowed body straightens up so much where it arrives."""
     straightens_frames: float

@@ -16,7 +16,7 @@ from motion_backend.motion import FPS
 from motion_backend.procedural.pose import Pose, settle_from, smooth
 from motion_backend.procedural.walk.arm_swing import Depth, arm_spread, swing_arms
 from motion_backend.procedural.walk.cadence import cadence, plan_phase
-from motion_backend.procedural.walk.carriage import carriage
+from motion_backend.procedural.walk.carriage import Lean, carriage
 from motion_backend.procedural.walk.footsteps import Room, Steps, drift, plan_steps, yaw_of
 from motion_backend.procedural.walk.pelvis_height import landing, lifted
 from motion_backend.procedural.walk.root_path import SPACING, Route, evenly, plan_route, resample
@@ -366,7 +366,15 @@ def _leaning(route: Route, style: Walk, brisk: Array) -> tuple[Array, Array]:
     bowed = style.bearing.lean > row.bowed_from_deg
     lean = np.radians(style.bearing.lean) * (1 - row.straightens_share * arriving * bowed)
     fast = np.clip(route.speed - row.fast_from_mps, 0, row.fast_within_mps)
-    return np.asarray(lean), np.asarray(row.walking_rad * brisk + row.fast_rad_per_mps * fast)
+    return np.asarray(lean), np.asarray(row.walking_rad * brisk + row.fast_rad_per_mps * fast + _falling(route, row))
+
+
+def _falling(route: Route, row: Lean) -> Array:
+    """How far a body that sets out falls forward before its steps catch it. (T,)."""
+    ahead = np.minimum(np.arange(len(route.speed)) + round(row.falls_ahead_s * FPS), len(route.speed) - 1)
+    to_come = np.maximum(route.speed[ahead] - route.speed, 0.0)
+    gone = np.cumsum(route.speed) / FPS
+    return np.asarray(row.falls_rad_per_mps * to_come * np.clip(1.0 - gone / row.falls_within_m, 0.0, 1.0))
 
 
 def _gaze(route: Route, style: Walk, hip_turn: Array, moved: tuple[Array, Array], rng: np.random.Generator) -> Array:
