@@ -24,6 +24,7 @@ from planner_service.themes.asides import (
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
 from planner_service.themes.prose import prose_of
+from planner_service.themes.sentence_order import in_story_time
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import FLOATING, NAMING, Token, has_verb, names, verb_place
@@ -136,7 +137,7 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             ". " if said[-1:] in ".!?" and match.string[match.end() :].lstrip()[:1].isupper() else " "
         )
 
-    found: list[Clause] = []
+    found: list[list[Clause]] = []
     sentences = sentences_of(_QUOTE.sub(kept, text))
     for number, sentence in enumerate(sentences):
         told: list[list[Clause]] = []
@@ -157,8 +158,8 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             )  # "because guests are coming", "the coffee going cold"
             if (not doer and own.lower() != "it") or not beside:
                 doer = own or doer
-        found += [part for place in in_time(pieces) for part in told[place]]
-    return tuple(found)
+        found.append([part for place in in_time(pieces) for part in told[place]])
+    return tuple(in_story_time(sentences, found))
 
 
 def _told_last(told: Sequence[Sequence[Clause]], relative: str) -> str:
