@@ -20,7 +20,8 @@ _THEN: Final = re.compile(
 )
 """how those begin that go on telling of what comes before it,"""
 _AFTER_IT: Final = re.compile(
-    r"\b(?:bed|sleep\w*|asleep|slept|dream\w*|wak\w+|woke\w*|pillow|returns?|comes? (?:back|home)|outside|driv\w+|drove|to (?:work|school))\b",
+    r"\b(?:bed|sleep\w*|asleep|slept|dream\w*|wak\w+|woke\w*|pillow|returns?|comes? (?:back|home)|outside|driv\w+|drove"
+    r"|to (?:work|school))\b",
     re.IGNORECASE,
 )
 """unless they tell of what follows it."""

@@ -23,6 +23,7 @@ from planner_service.themes.asides import (
     without_relative,
 )
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
+from planner_service.themes.memories import long_ago
 from planner_service.themes.prose import prose_of
 from planner_service.themes.sentence_order import in_story_time
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
@@ -79,9 +80,6 @@ _MEANWHILE: Final = re.compile(
     r"|(?:hours|minutes|moments|an hour|a minute|a moment) later)),? (?=([a-z]+)\b)"
 )
 """When it is, between a joint and what is done then: "drinks coffee, and | at dawn | falls asleep"."""
-_AGO: Final = re.compile(r"\b(?:years?|months?|weeks?|days?|decades|ages|long) ago\b", re.IGNORECASE)
-_NOW: Final = re.compile(r"\b(?:now|nowadays|today|tonight)\b", re.IGNORECASE)
-"""What was done so long ago is remembered where this is told after it."""
 _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
 
@@ -139,12 +137,13 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
 
     found: list[list[Clause]] = []
     sentences = sentences_of(_QUOTE.sub(kept, text))
+    past = long_ago(sentences)
     for number, sentence in enumerate(sentences):
         told: list[list[Clause]] = []
         doer = ""
         for piece in (pieces := pieces_of(sentence)):
             parts = _clause(piece, quotes, number)
-            if _AGO.search(piece.text) and any(map(_NOW.search, sentences[number + 1 :])):
+            if number in past:
                 parts = [replace(part, perfect=bool(part.verb)) for part in parts]
             parts = _sharing(_main(told[-1]), parts) if told else parts
             own = _main(parts).subject
