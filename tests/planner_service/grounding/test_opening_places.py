@@ -128,6 +128,7 @@ TURN = ("touch", "rotate with the right hand", "bed")
     [
         ("touch", "slams the door behind her", True), ("touch", "answers the knock", True),
         ("touch", "lets the cat out", True), ("touch", "locks the front door", True),
+        ("loco", "steadily walking forward; leaves", True), ("loco", "leaves the cup there", False),
         ("loco", "runs to the door", True), ("loco", "waits by the door", True),
         ("touch", "opens the fridge door", False), ("touch", "opens the door of the oven", False),
         ("touch", "opens the cupboard", False), ("loco", "walks to the cupboard door", False),
