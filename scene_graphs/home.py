@@ -49,6 +49,10 @@ HANDLE_HEIGHT: Final = 1.0
 """Of a door's handle above the floor (metres)."""
 HANDLE_IN: Final = 0.135
 """From the edge of a door to the middle of its handle (metres)."""
+SILL: Final = 0.3
+"""An opening that begins higher than this is a window, and no door (metres)."""
+THRESHOLD: Final = 0.5
+"""How far outside an outer door the floor is known (metres)."""
 _DRAWS: Final = 12
 """Of rooms for a random home, before it is told why they cannot be joined."""
 
@@ -127,6 +131,12 @@ class Home:
         reach = WALL_GAP / 2 + 0.01
         ways = [shapely.LineString(doorway.segment).buffer(reach, cap_style="flat") for doorway in self.doorways]
         return shapely.union_all([*self._outlines, *ways])
+
+    @cached_property
+    def thresholds(self) -> shapely.Geometry:
+        """Outside every outer door as much floor, in [x, z], as somebody needs who goes out of it."""
+        doors = [one for wall in self.walls for one in wall.openings if one.bottom <= SILL and not self.leads_on(one)]
+        return shapely.union_all([shapely.LineString(one.segment).buffer(THRESHOLD, cap_style="flat") for one in doors])
 
     def leads_on(self, opening: Opening) -> bool:
         """Whether an opening of a wall is a side of a doorway to another room."""

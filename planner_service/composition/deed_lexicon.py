@@ -340,6 +340,8 @@ def readings(clause: Clause) -> Iterator[tuple[str, ...]]:
     yield ("cannot", *clause.lemmas) if clause.unable else clause.lemmas
     if not grammar().adverbs.isdisjoint(clause.lemmas):  # "is still on hold"
         yield tuple(lemma for lemma in clause.lemmas if lemma not in grammar().adverbs)
+    if clause.verb == "dream":
+        return  # of dancing
     tokens = [token.low for token in tokens_of(clause.text)]
     nouns = grammar().marks - {"to"}
     beside = {word for before, word in pairwise(tokens) if before not in nouns}  # not "her reading glasses"

@@ -242,7 +242,7 @@ class DeedReader:
                 return told  # nothing else is played for what would be shown by its opposite
         if likely is None or (told is not None and (told.row.why or told.is_gesture)):
             return told
-        if told is not None and _is_plain(told, clause):
+        if told is not None and (_is_plain(told, clause) or clause.verb == "dream"):
             return told
         skill, best = likely.best
         most = likely.captions[skill, best]

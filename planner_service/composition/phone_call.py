@@ -18,7 +18,9 @@ _TALKS: Final = re.compile(r"\bphone\b.*\bear\b|\btalking on the phone\b")
 _INTO_IT: Final = re.compile(
     r"\b(?:on|over|down|into) (?:the|his|her|their|my) (?:\w+ )?(?:phone|telephone|receiver)\b"
 )
-_VOICED: Final = re.compile(r"^(?:shouting|laughing|talking|crying|sighing|pacing|listening|stand still)\b")
+_VOICED: Final = re.compile(
+    r"^(?:shouting|laughing|talking|crying|sighing|pacing|listening|stand still|nodding|shaking the head)\b"
+)
 """Captions of what may be done on the phone as well."""
 _ABOUT: Final = re.compile(r"\b(?:up and down|back and forth|to and fro|around|about|in circles)\b")
 _HANGS_UP: Final = re.compile(

@@ -104,11 +104,12 @@ def dozing(resting: PlannedKeyframe | None, read: ReadBeat, reader: DeedReader) 
     """Ways of sitting on what cannot be lain on that show what is else done lying: "nods off"."""
     if resting is None or resting.skill is not Skill.SITDOWN or affords(resting.furniture, "lie"):
         return ()
-    if shows(Skill.SITDOWN, resting.caption, read.clause):
-        return (resting.caption,)  # who has their head on the desk falls asleep there
     if sleeps(read.clause):
         at_table = any(seats[0] == resting.furniture for seats in deed_table().seats_at.values())
-        return (_ON_ARMS if at_table else _IN_SEAT,)
+        own = resting.caption in (_ON_ARMS, _IN_SEAT)  # who has their head on the desk falls asleep there
+        return (resting.caption if own else _ON_ARMS if at_table else _IN_SEAT,)
+    if shows(Skill.SITDOWN, resting.caption, read.clause):
+        return (resting.caption,)
     likely = reader.likely(read.clause)
     return seated_as_well(likely) if likely is not None else ()
 

@@ -16,7 +16,7 @@ from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import grammar, lemma_of
-from planner_service.themes.opening_words import goes_out, opening_of
+from planner_service.themes.opening_words import opening_of
 from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things, things_called
@@ -72,7 +72,6 @@ _BARE: Final = re.compile(
     r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|dressing)\b"
 )
 """Captions in which nothing is in the hands; but a box."""
-LEFT: Final = "that the home is left"
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
 """Of captions that do it several times."""
 
@@ -97,13 +96,11 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
     besides = [
         text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
     ]
-    left = (LEFT,) if goes_out(clause.text) else ()
     more = (
         *others_in(clause, keyframes),
         *_things(clause, keyframes),
         *_places(clause, keyframes),
         *_counts(clause, keyframes),
-        *left,
     )
     return (*besides, *(text for text in dict.fromkeys(more) if not any(text in one for one in besides)))
 

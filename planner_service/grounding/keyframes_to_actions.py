@@ -33,7 +33,7 @@ from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
-from planner_service.themes.opening_words import Kind, comes_in, goes_to_window, opening_of
+from planner_service.themes.opening_words import Kind, comes_in, goes_out, goes_to_window, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
 from scene_graphs.errors import UserError
 from scene_graphs.furniture import display_name, has_front
@@ -172,6 +172,7 @@ def act(
         words_of_it = f"{keyframe.caption}; {said[index] if said else ''}"
         stage.openings.append(opening_of(keyframe.skill, words_of_it))
         stage.to_window |= {index} if goes_to_window(words_of_it) else set()
+        stage.out |= {index} if goes_out(words_of_it) else set()
         stage.seated_for.append(busy[index] or keyframe.caption)
         before = keyframes[index - 1] if index else None
         if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
@@ -208,6 +209,8 @@ class _Stage:
         """The window or door that each keyframe so far asks for."""
         self.to_window: set[int] = set()
         """Keyframes whose words lead to a window."""
+        self.out: set[int] = set()
+        """Keyframes in which somebody leaves the home."""
         self.seated_for: list[str] = []
         """The caption that a seat is chosen for: what needs a table, of all that is done on it."""
         self.elsewhere: set[int] = set()
@@ -416,7 +419,7 @@ class _Stage:
                 came = done[-1][1] if done and done[-1][0].skill is Skill.LOCO else None
                 leg = _Leg(came, at, None if following is None else self._leads_to(following, places[index + 1]))
                 action = self._aimed(action, following, places[index], leg, done)
-            if index == len(drafts) - 1:
+            if index == len(drafts) - 1 and action.keyframe not in self.out:  # who has left stands nowhere
                 action = _last(action)
             done.append((action, at))
             at = action.goal or (action.spot.standing if action.spot else at)
@@ -460,6 +463,8 @@ class _Stage:
         found = opening_place(self.home, self.walkable, kind, place.room, at)
         if found is None:
             return replace(action, lacks=LACKS[kind])
+        if kind == "door" and action.keyframe in self.out and self.walkable.reachable(found.standing, found.outside):
+            return replace(action, goal=found.outside, facing=found.facing)
         stands = max(seconds, LOOKS_OUT) if (seconds := stays(action.caption)) else 0.0
         return replace(action, goal=found.standing, facing=found.facing, stands=stands)
 

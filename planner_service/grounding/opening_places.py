@@ -17,7 +17,7 @@ from motion_backend.walls import Side
 from planner_service.themes.opening_words import Kind
 from scene_graphs.affordances.affordances import Spot
 from scene_graphs.boxes import Part
-from scene_graphs.home import HANDLE_HEIGHT, Home, Wall
+from scene_graphs.home import HANDLE_HEIGHT, SILL, Home, Wall
 from scene_graphs.layout import Opening, Placed, wrap
 from scene_graphs.meshes.interior_mesh import CURTAIN_ABOVE, CURTAIN_BELOW, CURTAIN_OUT, LEAF_OUT
 from scene_graphs.meshes.moving_parts import CURTAINS, ROOM_DOOR
@@ -29,13 +29,13 @@ LACKS: Final[dict[Kind, str]] = {
     "door": "no door to the outside that can be got to: it is done without one",
 }
 """What is noted where there is none."""
-_SILL: Final = 0.3
-"""An opening that begins higher than this is a window, and no door (metres)."""
 _HANDLE: Final = 0.04
 """From the plane of the wall to the handle of its door, into the room (metres)."""
 _ENTERED: Final = (0.7, 0.9, 0.55, 1.2)
 """How far before the door one stands who has just come in (metres)."""
 _TO_LOOK: Final = (0.45, 0.6, 0.8, 1.0, 1.25, 1.5, 1.8, 2.1)
+_PASSED: Final = 0.3
+"""How far outside of the door one is who has just gone out by it (metres)."""
 _TO_REACH: Final = (0.45, 0.5, 0.55, 0.6)
 """How far from the wall one stands, the best first (metres)."""
 _ALONG: Final = (0.0, -0.25, 0.25)
@@ -57,6 +57,12 @@ class OpeningPlace:
     middle: Point
     """[x, z] of what is straight ahead: the wall, or the handle of the door."""
     opening: Opening
+
+    @property
+    def outside(self) -> Point:
+        """[x, z] of who has just gone out by it."""
+        x, z = np.mean(np.asarray(self.opening.segment), axis=0)
+        return float(x + _PASSED * np.sin(self.facing)), float(z + _PASSED * np.cos(self.facing))
 
     @property
     def inward(self) -> float:
@@ -152,5 +158,5 @@ def _places(
 def _openings(home: Home, wall: Wall, kind: Kind) -> Iterator[Opening]:
     """The windows of a wall, or its doors that lead out of the home."""
     for opening in wall.openings:
-        if (opening.bottom > _SILL) == (kind == "window") and not (kind == "door" and home.leads_on(opening)):
+        if (opening.bottom > SILL) == (kind == "window") and not (kind == "door" and home.leads_on(opening)):
             yield opening

@@ -17,6 +17,7 @@ _FORMS: Final = {
     "he": dict(zip(_BLANKS, ("he", "him", "his", "his", "himself"), strict=True)),
     "she": dict(zip(_BLANKS, ("she", "her", "her", "hers", "herself"), strict=True)),
     "they": dict(zip(_BLANKS, _BLANKS, strict=True)),
+    "I": dict(zip(_BLANKS, ("I", "me", "my", "mine", "myself"), strict=True)),
 }
 _NOT_OURS: Final = re.compile(r"\b(?:I|you|we|me|us|my|your|our)\b", re.IGNORECASE)
 
@@ -34,9 +35,16 @@ class Voice:
         word = character.pronouns.strip().lower().split("/")[0]
         return cls(character.name.strip() or "Sam", word if word in _FORMS else "they")
 
+    def in_theme_of(self, hero: str) -> Voice:
+        """The voice for a theme about `hero`: who tells of themselves goes on so, unless somebody else is named."""
+        unnamed = self == Voice.of(Character())
+        return Voice("I", "I") if hero == "I" and unnamed else self
+
     def was(self, subject: str) -> str:
         """Was or were, for its name or its pronoun: "the twins were", "the old couple was"."""
-        several = subject == "they" or (subject == self.name and subject.islower() and is_plural(subject.split()[-1]))
+        several = (subject == "they" and self.pronouns != "I") or (
+            subject == self.name and subject.islower() and is_plural(subject.split()[-1])
+        )
         return "were" if several else "was"
 
     def __getitem__(self, blank: str) -> str:

@@ -26,6 +26,8 @@ from planner_service.narration.tense import form_of
 from planner_service.narration.told import Told, Words, page
 from planner_service.scripts.acted_beats import connects, planned_beats
 from planner_service.scripts.script import LongScript, PlannedKeyframe
+from planner_service.themes.protagonist import hero_of
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_told
 from scene_graphs.furniture import class_of, display_name, is_known
@@ -41,7 +43,7 @@ Rows = Sequence[tuple[int, PlannedKeyframe]]
 
 def narrate(script: LongScript, character: Character, seed: int = 0, places: Places | None = None) -> Told:
     """The story of a script by rules; the same seed tells it in the same words."""
-    voice = Voice.of(character)
+    voice = Voice.of(character).in_theme_of(hero_of(clauses_of_text(script.theme)))
     shown = "\n".join(beat.text for beat in script.beats if beat.seen) if script.beats else None
     title = title_of(script.theme, _mood_of(script), _thing_in(script), shown)
     wording = Wording(voice, Variety(seed, zlib.crc32(script.theme.encode())), places or {})

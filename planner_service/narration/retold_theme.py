@@ -74,7 +74,7 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     theme = re.sub(r"(?<!\.)\.\.(?!\.)", ".", prose_of(theme))
     clauses = clauses_of_text(theme)
     hero = hero_of(clauses)
-    order = next((one for one in clauses if not one.subject and one.text.split()[0].lower() == one.verb), None)
+    order = next((one for one in clauses if not one.subject and (_begins_with_verb(one) or _is_order(one.text))), None)
     ordered = order is not None and (order is clauses[0] or not hero)
     hero = hero or ("you" if ordered else "")  # "Hide under the table, then crawl out"
     own = called(clauses, hero) or hero.lower()
@@ -84,7 +84,7 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     several = own in _PLURAL or (own not in _SINGULAR and is_plural(head_of(hero).lower()))  # "two friends dance, sing"
     together = {one.text.split()[0].lower() for one in clauses if _are_several(one.doer)}  # "Emma and Luca | quarrel"
     _leave_questions(told)
-    _put_in_past(told, plain=several, all_of_it=_is_present(told), together=together)
+    _put_in_past(told, plain=several, all_of_it=ordered or _is_present(told), together=together)
     if ordered:
         _say_who(voice, told, beats)
     _tell_of(voice, told.tokens, hero, own)
@@ -102,8 +102,17 @@ def _with_verb(stretch: Stretch, beats: Sequence[Beat], clauses: Sequence[Clause
     """A stretch without a verb where the words of its beat have none: "cups in the sink"."""
     text = beats[stretch.beat].text
     told = [one.verb for one in clauses if text == one.text or text.endswith(f" {one.text}")]
-    does = " " not in text and text.lower() in bases(text.lower()) and not (text.lower() in things() or is_known(text))
-    return replace(stretch, verb=None) if told and not (any(told) or does) else stretch
+    return replace(stretch, verb=None) if told and not (any(told) or _is_order(text)) else stretch
+
+
+def _begins_with_verb(clause: Clause) -> bool:
+    return clause.text.split()[0].lower() == clause.verb
+
+
+def _is_order(text: str) -> bool:
+    """Whether a word alone tells what is done, and names no thing: "Leave"."""
+    word = text.lower()
+    return " " not in text and word in bases(word) and not (word in things() or is_known(text))
 
 
 def _leave_questions(told: Retelling) -> None:
@@ -210,9 +219,9 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     acts = before in _PLURAL or (
         head and (is_plural(before) or (plain and before == "and") or follows in grammar().marks | _TAKEN)
     )
-    form, how = form_of(word), is_adjective(word) and not acts
-    base = word in bases(word) and not (how or _is_noun(word, before))
     orders = plain and head and before in ("", ",")  # "Feed the cat": no past of a fee
+    form, how = form_of(word), is_adjective(word) and not (acts or orders)
+    base = word in bases(word) and not (how or _is_noun(word, before))
     form = None if orders and base else form
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
@@ -250,8 +259,8 @@ def _is_list(told: Retelling, stretch: Stretch) -> bool:
 
 def _tell_of(voice: Voice, tokens: Sequence[Token], hero: str, own: str) -> None:
     """The voice's pronouns in place of those of the theme's person, and its name where that is first spoken of."""
-    mine = {"i": _FIRST, "we": _FIRST, "you": _SECOND}.get(hero.lower(), {})
-    blanks = {**mine, **(_THIRD.get(own, {}) if own != voice.pronouns else {})}
+    mine = {"i": _FIRST, "we": _FIRST, "you": _SECOND}.get(hero.lower(), {}) if voice.pronouns != "I" else {}
+    blanks = {**mine, **(_THIRD.get(own, {}) if voice.pronouns not in (own, "I") else {})}
     words = [(at, token) for at, token in enumerate(tokens) if token.is_word and not token.quoted]
     for at, token in words:
         if blank := blanks.get(token.told.lower()):

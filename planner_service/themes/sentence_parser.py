@@ -25,7 +25,9 @@ from planner_service.themes.asides import (
 from planner_service.themes.clause import Clause
 from planner_service.themes.constructions import meant
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
+from planner_service.themes.memories import long_ago
 from planner_service.themes.prose import prose_of
+from planner_service.themes.sentence_order import in_story_time
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import FLOATING, NAMING, Token, has_verb, names, verb_place
@@ -80,9 +82,6 @@ _MEANWHILE: Final = re.compile(
     r"|(?:hours|minutes|moments|an hour|a minute|a moment) later)),? (?=([a-z]+)\b)"
 )
 """When it is, between a joint and what is done then: "drinks coffee, and | at dawn | falls asleep"."""
-_AGO: Final = re.compile(r"\b(?:years?|months?|weeks?|days?|decades|ages|long) ago\b", re.IGNORECASE)
-_NOW: Final = re.compile(r"\b(?:now|nowadays|today|tonight)\b", re.IGNORECASE)
-"""What was done so long ago is remembered where this is told after it."""
 _AGE: Final = re.compile(r"(?<=\w) \((\d{1,3})\)(?= [a-z])")
 """An age behind a name: "Henrik (74) waters the plants"."""
 
@@ -104,14 +103,15 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             ". " if said[-1:] in ".!?" and match.string[match.end() :].lstrip()[:1].isupper() else " "
         )
 
-    found: list[Clause] = []
+    found: list[list[Clause]] = []
     sentences = sentences_of(_QUOTE.sub(kept, text))
+    past = long_ago(sentences)
     for number, sentence in enumerate(sentences):
         told: list[list[Clause]] = []
         doer = ""
         for piece in (pieces := pieces_of(sentence)):
             parts = _clause(piece, quotes, number)
-            if _AGO.search(piece.text) and any(map(_NOW.search, sentences[number + 1 :])):
+            if number in past:
                 parts = [replace(part, perfect=bool(part.verb)) for part in parts]
             parts = _sharing(_main(told[-1]), parts) if told else parts
             parts = [one for part in parts for one in meant(part)]
@@ -129,8 +129,8 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
             )  # "because guests are coming", "the coffee going cold"
             if (not doer and own.lower() != "it") or not beside:
                 doer = own or doer
-        found += [part for place in in_time(pieces) for part in _as_supposed(told[place], pieces)]
-    return tuple(found)
+        found.append([part for place in in_time(pieces) for part in _as_supposed(told[place], pieces)])
+    return tuple(in_story_time(sentences, found))
 
 
 def _as_supposed(parts: Sequence[Clause], pieces: Sequence[Piece]) -> list[Clause]:

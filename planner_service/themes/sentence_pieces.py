@@ -38,6 +38,10 @@ _PAIRS: Final = frozenset(
 """Words that "and" makes one: "up and down"."""
 
 
+_OF_ORDER: Final = 2
+"""Words of a sentence that orders no more than what is done to a part of the body,"""
+_OWN: Final = theme_words()["body"] | {"tooth"}
+"""which these are."""
 _FEWEST_NOTES, _MOST_OF_NOTE = 3, 4
 """Pieces that a list of notes has more than, and words of the longest of them."""
 
@@ -88,6 +92,8 @@ def pieces_of(sentence: str) -> list[Piece]:
         cut.append(Piece(joint, tuple(current), source))
     if len(tokens) == 1 and lemma_of(tokens[0].low) in things():  # "Shoes. Keys?"
         return [replace(cut[0], verbless=True)]
+    if len(tokens) == _OF_ORDER and verb_of(tokens[0].low) == tokens[0].low and lemma_of(tokens[1].low) in _OWN:
+        return [replace(cut[0], bare=True)]  # "Brush teeth."
     return _without_relatives(_whole(cut))
 
 

@@ -342,7 +342,7 @@ class Walkable:
             if best is not None and away[number] >= best[0]:
                 break
             line, _ = along_lines(here[None], self._centers[number][None], 0.02)
-            if not self._on_floor(line):
+            if not self._on_ways(line):
                 continue
             blocked = float((self.field.at(line) <= 0.0).mean())
             cost = float(away[number]) * (1.0 + 10.0 * blocked)
@@ -352,6 +352,16 @@ class Walkable:
 
     def _on_floor(self, line: Array) -> bool:
         return bool(shapely.intersects_xy(self.home.floor, line[:, 0], line[:, 1]).all())
+
+    def _on_ways(self, line: Array) -> bool:
+        """Whether a line is on the floor, or leaves it by an outer door."""
+        if self._on_floor(line):
+            return True
+        return bool(shapely.intersects_xy(self._ways, line[:, 0], line[:, 1]).all())
+
+    @cached_property
+    def _ways(self) -> shapely.Geometry:
+        return shapely.union(self.home.floor, self.home.thresholds)
 
 
 def _name(point: Point2) -> str:

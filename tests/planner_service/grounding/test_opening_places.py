@@ -128,6 +128,7 @@ TURN = ("touch", "rotate with the right hand", "bed")
     [
         ("touch", "slams the door behind her", True), ("touch", "answers the knock", True),
         ("touch", "lets the cat out", True), ("touch", "locks the front door", True),
+        ("loco", "steadily walking forward; leaves", True), ("loco", "leaves the cup there", False),
         ("loco", "runs to the door", True), ("loco", "waits by the door", True),
         ("touch", "opens the fridge door", False), ("touch", "opens the door of the oven", False),
         ("touch", "opens the cupboard", False), ("loco", "walks to the cupboard door", False),
@@ -183,3 +184,19 @@ def test_who_comes_in_begins_at_the_door_and_looks_into_the_room() -> None:
     assert z < 1.5, "the door is at z = 0"
     assert grounded(*rows, said=("paces", "tidies"), home=DOOR)[0].begins is None
     assert grounded(*rows, said=("comes home", "tidies"), home=BLIND)[0].begins is None, "no door"
+
+
+def test_who_goes_out_walks_on_through_the_door_and_who_waits_by_it_stays_inside() -> None:
+    (walk,) = grounded(("loco", "walking quickly", "floor"), said=("rushes out of the door",), home=DOOR)
+    assert walk.goal is not None
+    assert walk.goal[1] < -0.2, "the door is at z = 0"
+    assert walk.stands == 0, "nobody is seen standing outside"
+    director = Director.of("procedural")
+    motion = director.act(DOOR, walk, director.begin(DOOR, Character(), 0))[0]
+    assert motion.completed, motion.reason
+    assert motion.root_positions[-1, 2] < -0.2
+    (wait,) = grounded(("loco", "stand still", "floor"), said=("waits by the door",), home=DOOR)
+    assert wait.goal is not None
+    assert wait.goal[1] > 0.3
+    (blind,) = grounded(("loco", "walking quickly", "floor"), said=("rushes out of the door",), home=BLIND)
+    assert blind.lacks == LACKS["door"]

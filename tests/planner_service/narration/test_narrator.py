@@ -49,6 +49,7 @@ from scene_graphs.furniture import catalogue, display_name
 SAM, EMILY, JAMES = Character("Sam", "they"), Character("Emily", "she"), Character("James", "he")
 PEOPLE = (SAM, EMILY, JAMES, Character("the old man", "he"), Character("my sister", "she"), Character("the twins"))
 SHE, HE, THEY = Voice("Ana", "she"), Voice("Tom", "he"), Voice("Sam", "they")
+ME = THEY.in_theme_of("I")
 SLIPS = {
     "two spaces": r"  ",
     "a space before a mark": r" [.,;:!?]",
@@ -443,6 +444,9 @@ def test_no_sentence_is_told_half_in_the_past(theme: str) -> None:
 @for_each(
     ("theme", "voice", "told"),
     [
+        ("I'm ill. I hug myself, and my cat sleeps.", ME, "I was ill. I hugged myself, and my cat slept."),
+        ("He is ill.", THEY.in_theme_of("he"), "Sam was ill."),
+        ("I am ill.", HE.in_theme_of("I"), "Tom was ill."),
         ("I throw myself on my bed and cry.", HE, "Tom threw himself on his bed and cried."),
         (
             "I'm ill. I call my sister, who loves me.",

@@ -340,3 +340,19 @@ def test_what_there_is_nothing_but_is_there() -> None:
     (boredom,) = [one.clause for one in beats_of("Nothing but boredom.")]
     assert not tells_no_deed(boredom)
     assert tells_no_deed(beats_of("She waits. Nothing.")[-1].clause)
+
+
+@for_each(
+    ("theme", "kinds"),
+    [
+        ("Last summer they danced here. She sits down.", ["other", "memory", "deed"]),
+        ("Once, long ago, she sang on a stage. She washes the dishes.", ["memory", "deed"]),
+        ("She sits on the bed and thinks back to when she danced every night.", ["deed", "memory", "deed"]),
+        ("Flashback: a girl dances in the hall. Now old, she sits down.", ["deed", "memory", "other", "deed"]),
+        ("He closes his eyes and sees himself as a boy, running home.", ["deed", "deed", "memory"]),
+        ("She looks at a photo. In it she was dancing. She lies down.", ["deed", "memory", "deed"]),
+        ("A year ago he moved in. He swept the floor.", ["deed", "deed"]),
+    ],
+)  # fmt: skip
+def test_what_was_done_long_ago_is_remembered_where_the_rest_is_told_as_of_now(theme: str, kinds: list[str]) -> None:
+    assert [one.beat.kind for one in beats_of(theme)] == kinds

@@ -359,3 +359,19 @@ def test_who_tells_of_a_person_where_one_is_named_before_it(text: str, who: str)
 )
 def test_nouns_and_purposes_are_no_deeds_of_their_own(text: str, clauses: list[str]) -> None:
     assert [one.text for one in clauses_of_text(text)] == clauses
+
+
+@for_each(
+    ("text", "verbs"),
+    [
+        ("Before going to bed, he eats. Then he reads.", ["eat", "read", "go"]),
+        ("Before going to bed, he eats. Then he reads in bed.", ["eat", "go", "read"]),
+        ("Before going to bed, he eats. He reads.", ["eat", "go", "read"]),
+        ("Before eating, he washes. Then he sits down.", ["wash", "eat", "sit"]),
+        ("He eats. Before that, he washes.", ["wash", "eat"]),
+        ("Only after she has phoned, she eats.", ["phone", "eat"]),
+        ("She eats only after she has phoned.", ["phone", "eat"]),
+    ],
+)
+def test_sentences_are_in_the_order_of_time_where_that_is_plain(text: str, verbs: list[str]) -> None:
+    assert [one.verb for one in clauses_of_text(text)] == verbs
