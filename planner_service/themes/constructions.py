@@ -40,11 +40,23 @@ _ON: Final = frozenset(("on", "off", "out", "back", "away", "down", "up"))
 
 
 @table
+class LimbRow:
+    """What a part of the body does, and what whoever's it is does in it; `then` are words that may follow its verb, and
+    "..." in what is meant stands for the rest."""
+
+    limb: Words
+    does: Words
+    then: Words
+    means: str
+
+
+@table
 class ConstructionWords:
     """data/constructions.toml."""
 
     events: dict[str, str]
     words: dict[str, Words]
+    limb: tuple[LimbRow, ...]
 
 
 @cache
@@ -64,9 +76,9 @@ def meant(clause: Clause) -> list[Clause]:
     """The clause with the deed that it means, where its verb is none; and a second one where it tells of two."""
     if made := _made_to(clause):
         return made
-    if clause.quotes or clause.aside:
+    if clause.quotes or (clause.aside and clause.verb):
         return [clause]
-    for construction in _CONSTRUCTIONS:
+    for construction in _CONSTRUCTIONS if clause.verb else (_alone,):
         if found := construction(clause):
             return found
     return [clause]
@@ -152,14 +164,32 @@ def _of_event(clause: Clause) -> list[Clause]:
     return [replace(_meaning(clause, words, who), unable=clause.unable or (clause.denied and event == "sleep"))]
 
 
-def _of_eyes(clause: Clause) -> list[Clause]:
-    """Eyes are who looks: "her gaze wanders round the room"."""
-    head = lemma_of(_head(clause.subject))
-    if head not in _words("looking") or clause.verb not in _words("looks"):
+def _of_limbs(clause: Clause) -> list[Clause]:
+    """A limb moves as whoever's it is does something: "her gaze wanders round the room", "his arms go round her"."""
+    head, after = lemma_of(_head(clause.subject)), _after(clause)
+    words = [word for word in after if word not in ("slowly", "quickly", "gently")]
+    for row in _known().limb:
+        if head not in row.limb or clause.verb not in row.does:
+            continue
+        if row.then and (not words or words[0] not in row.then):
+            continue
+        rest = words[bool(row.then) :]
+        plainly = [one for word in row.means.split() for one in (rest if word == "..." else [word])]
+        return [_meaning(clause, plainly, _owner(clause.subject))]
+    return []
+
+
+def _in_event(clause: Clause) -> list[Clause]:
+    """An event is how a body moves: "his mouth opens in a yawn", "her shoulders heave with sobs", "bursts into tears"."""
+    limb = lemma_of(_head(clause.subject)) in theme_words()["body"] | {"lip", "body"}
+    if not (limb or clause.verb in _words("shaking")):
         return []
     after = _after(clause)
-    after = ("at", *after) if after and after[0] in grammar().marks else after
-    return [_meaning(clause, ("look", *after), _owner(clause.subject))]
+    at = next((at for at, word in enumerate(after) if word in ("in", "with", "into")), None)
+    rest = after[at + 1 :] if at is not None else ()
+    found = _events_in(rest) or ([(event,)] if rest and (event := event_of(rest[0])) else [])
+    who = _owner(clause.subject) if limb else clause.subject
+    return [_meaning(clause, event, who) for event in found if event[0] not in _words("looking")]
 
 
 def _of_hands(clause: Clause) -> list[Clause]:
@@ -174,8 +204,6 @@ def _of_hands(clause: Clause) -> list[Clause]:
     if not led or not own.isdisjoint(map(lemma_of, after)):
         return []
     verb = "touch" if clause.verb in _words("finds") | {"be"} else clause.verb
-    if clause.verb in ("go", "move", "stray", "wander", "dart", "shoot", "fly", "come"):
-        return [_meaning(clause, ("reach", "for", *after[1:]), _owner(clause.subject))]
     return [_meaning(clause, (verb, *after), _owner(clause.subject))]
 
 
@@ -268,6 +296,8 @@ def _moved(clause: Clause) -> list[Clause]:
         return [_meaning(clause, ("put" if way == "on" else "take", way, *thing))]
     if clause.verb == "come":
         return [_meaning(clause, ("take", "off", *thing))] if worn and way == "off" else []
+    if way == "to" and lemma_of(after[-1]) in theme_words()["body"]:  # "the glass goes to his lips"
+        return [_meaning(clause, ("put" if head == "phone" else "raise", *thing, *after))]
     placed = way in ("in", "into", "on", "onto", "under", "back", "over", "to") and len(after) > 1
     lies = after[-1] not in ("voicemail", "floor", "pieces", "waste", "ringing")
     return [_meaning(clause, ("put", *thing, *after))] if placed and lies else []
@@ -303,8 +333,8 @@ def _by_event(clause: Clause) -> list[Clause]:
     """One event is all that is told: "his only answer is a nod", "replies with a shrug", "there is a yawn"."""
     head = lemma_of(_head(clause.subject))
     says = clause.verb in _words("answering")
-    alone = not clause.subject or head in _words("answers") or clause.subject.endswith(("'s", "’s"))
-    told = clause.verb in ("be", "come", "follow") and alone
+    alone = not clause.subject or {head, _head(clause.subject)} & _words("answers") or clause.subject.endswith(("'s", "’s"))
+    told = clause.verb in ("be", "come", "follow") and bool(alone)
     if not (says or told) or clause.denied:
         return []
     after = _after(clause)
@@ -326,7 +356,7 @@ def _alone(clause: Clause) -> list[Clause]:
     before = words[: led or 0]
     if led is None or not (set(before) <= grammar().adverbs | grammar().joints or before[0] in _words("besides")):
         return []
-    return [_meaning(clause, event) for event in _events_in(words[led:])]
+    return [replace(_meaning(clause, event), aside=False) for event in _events_in(words[led:])]
 
 
 def _events_in(words: Sequence[str]) -> list[tuple[str, ...]]:
@@ -365,8 +395,9 @@ def light_readings(lemmas: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
-    _of_eyes,
+    _of_limbs,
     _of_event,
+    _in_event,
     _of_hands,
     _held,
     _way,
@@ -375,5 +406,4 @@ _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
     _moved,
     _done_to,
     _by_event,
-    _alone,
 )

@@ -252,6 +252,10 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
         if not set(denials).issuperset(some) and some[-1].low != "and"  # "my roommate and | I"
     ]
+    if before and before[0].low in ("with", "after"):  # "With a sigh | Greta sits down"
+        first = Clause(_text(piece.source, before), "", "", _lemmas(before), piece.joint, sentence=sentence)
+        if any(one.verb for one in meant(first)):
+            return [*besides, first, *parts, *asides]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
 
 

@@ -193,7 +193,7 @@ def _is_when(lead: Sequence[Token]) -> bool:
 
 def _whole(pieces: list[Piece]) -> list[Piece]:
     """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
-    if all(verb_place(piece.tokens) is None for piece in pieces) and all(piece.joint in ("", ",") for piece in pieces):
+    if all(verb_place(piece.tokens) is None for piece in pieces) and all(piece.joint in ("", ",", "then") for piece in pieces):
         return pieces  # "stretch, shower, news"
     if _is_list(pieces):
         return [replace(one, bare=_orders(one), verbless=not _orders(one)) for one in pieces]
