@@ -26,10 +26,11 @@ from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.scripts.script import Beat
 from planner_service.themes.beats import EXPRESSIONS
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, kinds_of, lemma_of, past
 from planner_service.themes.prose import prose_of
 from planner_service.themes.protagonist import called, head_of, hero_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_plural

@@ -1,4 +1,4 @@
-"""A stretch of a sentence with one verb: who does what, whether it is denied, and how it is joined to what is told before."""
+"""A stretch of a sentence with one verb: who does what, whether it is denied, and what joins it to the one before."""
 
 from __future__ import annotations
 

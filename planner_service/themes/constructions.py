@@ -159,8 +159,8 @@ def _of_event(clause: Clause) -> list[Clause]:
     elsewhere = theme_words()["no_heroes"] | theme_words()["wheres"] | {"street", "neighbour", "neighbor"}
     if not who and not elsewhere.isdisjoint(clause.lemmas[1:]):
         return []  # "laughter comes from the street"
-    words = ("fall", "asleep") if event == "sleep" and not clause.denied else (event,)
-    words = (event, "his", "head") if event == "shake" else words
+    falls = event == "sleep" and not clause.denied
+    words = ("fall", "asleep") if falls else (event, "his", "head") if event == "shake" else (event,)
     return [replace(_meaning(clause, words, who), unable=clause.unable or (clause.denied and event == "sleep"))]
 
 
@@ -180,7 +180,7 @@ def _of_limbs(clause: Clause) -> list[Clause]:
 
 
 def _in_event(clause: Clause) -> list[Clause]:
-    """An event is how a body moves: "his mouth opens in a yawn", "her shoulders heave with sobs", "bursts into tears"."""
+    """An event is how a body moves: "his mouth opens in a yawn", "heaves with sobs", "bursts into tears"."""
     limb = lemma_of(_head(clause.subject)) in theme_words()["body"] | {"lip", "body"}
     if not (limb or clause.verb in _words("shaking")):
         return []
@@ -214,7 +214,12 @@ def _carried(clause: Clause) -> list[Clause]:
         return []
     who, size = _undergoer(clause)
     after = _after(clause)[size:]
-    if not who or size > _FEWEST or not after or after[0] not in grammar().prepositions | _ON | {"upstairs", "downstairs"}:
+    if (
+        not who
+        or size > _FEWEST
+        or not after
+        or after[0] not in grammar().prepositions | _ON | {"upstairs", "downstairs"}
+    ):
         return []
     if {"place", "back", "time", "mind", "sleep"} & set(after) and not _ON & set(after[:1]):
         return []
@@ -241,14 +246,24 @@ def _way(clause: Clause) -> list[Clause]:
     """Somebody goes a way, doing something else: "yawns his way to the bathroom"."""
     after = _after(clause)
     at = next((at for at, word in enumerate(after[:3]) if word == "way"), 0)
-    goes = after[at + 1 : at + 2] and after[at + 1] in ("to", "into", "across", "along", "down", "up", "out", "around", "towards")
+    goes = after[at + 1 : at + 2] and after[at + 1] in (
+        "to",
+        "into",
+        "across",
+        "along",
+        "down",
+        "up",
+        "out",
+        "around",
+        "towards",
+    )
     if not at or after[at - 1] not in _OWNERS or not goes or not event_of(clause.verb):
         return []
     return [clause, replace(_meaning(clause, ("walk", *after[at + 1 :]), clause.subject), joint="ing")]
 
 
 def _held(clause: Clause) -> list[Clause]:
-    """Somebody holds what is told to be held, or holds themself so: "a towel clutched to her chest", "legs drawn up"."""
+    """Somebody does what is told as done, or holds themself so: "a towel clutched to her chest", "legs drawn up"."""
     head, words = lemma_of(_head(clause.subject)), [token.low for token in tokens_of(clause.text)]
     done, limb = participle(clause.verb), head in theme_words()["body"]
     if done not in words[:4] or done == clause.verb or not grammar().auxiliaries.isdisjoint(words):
@@ -275,7 +290,7 @@ def _received(clause: Clause) -> list[Clause]:
     who, size = _undergoer(clause)
     if not who or size > _FEWEST or not {"sit", "lie"} & {*able}:
         return []
-    rests = ("lie", "on") if "lie" in able and "sit" not in able or head.endswith("bed") else ("sit", "in")
+    rests = ("lie", "on") if ("lie" in able and "sit" not in able) or head.endswith("bed") else ("sit", "in")
     return [_meaning(clause, (*rests, *clause.subject.lower().split()), who)]
 
 
@@ -318,10 +333,14 @@ def _done_to(clause: Clause) -> list[Clause]:
         return []
     rest = tuple(words[at + 1 :])
     by = rest.index("by") if "by" in rest else len(rest)
-    agent = next((token.text for token in tokens_of(clause.text)[::-1] if is_somebody(token.text)), "") if by < len(rest) else ""
+    agent = (
+        next((token.text for token in tokens_of(clause.text)[::-1] if is_somebody(token.text)), "")
+        if by < len(rest)
+        else ""
+    )
     if by < len(rest) and not agent:
         return []  # "the room is lit by a candle"
-    happens = clause.verb == "get" or agent or rest[:1] and rest[0] in _ON | {"open", "into", "onto"}
+    happens = clause.verb == "get" or agent or (rest[:1] and rest[0] in _ON | {"open", "into", "onto"})
     if not happens and (base in _words("states") or is_adjective(words[at])):
         return []
     particle = rest[:1] if rest[:1] and rest[0] in _ON | {"open"} else ()
@@ -333,7 +352,9 @@ def _by_event(clause: Clause) -> list[Clause]:
     """One event is all that is told: "his only answer is a nod", "replies with a shrug", "there is a yawn"."""
     head = lemma_of(_head(clause.subject))
     says = clause.verb in _words("answering")
-    alone = not clause.subject or {head, _head(clause.subject)} & _words("answers") or clause.subject.endswith(("'s", "’s"))
+    alone = (
+        not clause.subject or {head, _head(clause.subject)} & _words("answers") or clause.subject.endswith(("'s", "’s"))
+    )
     told = clause.verb in ("be", "come", "follow") and bool(alone)
     if not (says or told) or clause.denied:
         return []
@@ -382,11 +403,16 @@ def light_readings(lemmas: Sequence[str]) -> list[tuple[str, ...]]:
     """What a verb means that only says that the deed of a noun is done: "gives the pot a stir" is stirs the pot."""
     if not lemmas or lemmas[0] not in _words("light"):
         return []
-    marks = [at for at, word in enumerate(lemmas[:7]) if at and word in ("a", "an", "another", "one", "some", "the")]
-    for at in reversed(marks):
+    ones = [at for at, word in enumerate(lemmas[:7]) if at and word in ("a", "an", "another", "one", "some")]
+    given = lemmas[0] == "give" and len(lemmas) > 1 and lemmas[1] in grammar().marks - {"a", "an"}  # "gives the pot a"
+    for at in ones[-1:] if given else [one for one in ones[:1] if one <= _FEWEST]:
         for place in range(at + 1, min(at + _MOST_BEFORE_EVENT + 1, len(lemmas))):
             word, after = lemmas[place], lemmas[place + 1 :]
-            if verb_of(word) == word and is_noun(word) and (not after or not is_noun(after[0]) or after[0] in grammar().prepositions):
+            if (
+                verb_of(word) == word
+                and is_noun(word)
+                and (not after or not is_noun(after[0]) or after[0] in grammar().prepositions)
+            ):
                 rest = after[1:] if after[:1] == ("of",) else after
                 return [(event_of(word) or word, *lemmas[1:at], *rest)]
             if not (is_adjective(word) or is_adverb(word)):

@@ -33,10 +33,13 @@ _WHERE: Final = (
 _MOVES: Final = "go be hang wait dive hop slip hurtle"
 """Verbs that stand before who does them, beside those of postures and ways."""
 _CLEFT: Final = (
-    (re.compile(rf"^it (?:is|was) (?:only |just |once more )?(?P<who>{_WHO}) (?:who|that) (?=\w)", re.IGNORECASE), r"\g<who> "),
+    (
+        re.compile(rf"^it (?:is|was) (?:only |just |once more )?(?P<who>{_WHO}) (?:who|that) (?=\w)", re.IGNORECASE),
+        r"\g<who> ",
+    ),
     (
         re.compile(
-            r"^it (?:is|was) (?:only )?(?P<how>(?:with|on|in|at|by|under|from|into|without|over) [^,]{2,60}?) that (?=\w)",
+            r"^it (?:is|was) (?:only )?(?P<how>(?:with|on|in|at|by|under|from|into|over) [^,]{2,60}?) that (?=\w)",
             re.IGNORECASE,
         ),
         r"\g<how>, ",
@@ -62,7 +65,9 @@ _DONE_ALL: Final = re.compile(
 )
 _WERE_IT: Final = re.compile(rf"^(?P<verb>were|had|should) (?P<who>{_PERSON}) (?=[^,]{{2,80}}, )", re.IGNORECASE)
 """A condition without "if": "Were she braver, …"."""
-_NO_SOONER: Final = re.compile(rf"^no sooner (?P<verb>is|was|does|did) (?P<who>{_PERSON}) (?P<how>[^,]{{2,60}}?),? than ", re.IGNORECASE)
+_NO_SOONER: Final = re.compile(
+    rf"^no sooner (?P<verb>is|was|has) (?P<who>{_PERSON}) (?P<how>[^,]{{2,60}}?),? than ", re.IGNORECASE
+)
 
 
 def in_usual_order(sentence: str) -> str:
@@ -73,7 +78,9 @@ def in_usual_order(sentence: str) -> str:
     sentence = _ALL_DONE.sub(_does, sentence)
     sentence = _TAKES.sub(_does, sentence)
     sentence = _DONE_ALL.sub(_is_doing, sentence)
-    sentence = _WERE_IT.sub(lambda one: f"if {one['who']} {one['verb'].lower()} " if _is_person(one["who"]) else one[0], sentence)
+    sentence = _WERE_IT.sub(
+        lambda one: f"if {one['who']} {one['verb'].lower()} " if _is_person(one["who"]) else one[0], sentence
+    )
     sentence = _NO_SOONER.sub(lambda one: f"when {one['who']} {one['verb']} {one['how']}, ", sentence)
     return _inverted().sub(_turned, sentence)
 
