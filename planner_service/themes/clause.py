@@ -35,6 +35,8 @@ class Clause:
     """What is said in it."""
     plainly: str = ""
     """What is done in plain words, from its verb on, where the clause says it in others: "washes the dishes"."""
+    led: int = 0
+    """Words of its text before its written verb, where that is not what it means: of "A yawn | escapes"."""
     sentence: int = 0
     """Index of its sentence in the text."""
     place: int = 0

@@ -90,11 +90,13 @@ def _words(name: str) -> frozenset[str]:
 
 def _meaning(clause: Clause, words: Sequence[str], subject: str = "") -> Clause:
     """The clause with another deed and doer; what was its subject stands in its text."""
-    told = clause.text.lower().startswith(clause.subject.lower()) or clause.subject == subject
+    told = clause.subject in ("", subject) or clause.text.lower().startswith(f"{clause.subject.lower()} ")
     text = clause.text if told else f"{clause.subject} {clause.text}"
+    led = 0 if told else len(clause.subject.split())
     lemmas = (words[0], *map(lemma_of, words[1:]))
     plainly = " ".join((third_person(words[0]), *words[1:]))
-    return replace(clause, text=text, subject=subject, verb=words[0], lemmas=lemmas, plainly=plainly, absolute=False)
+    means = replace(clause, subject=subject, verb=words[0], lemmas=lemmas, plainly=plainly, absolute=False)
+    return replace(means, text=text, led=led)
 
 
 def _after(clause: Clause) -> tuple[str, ...]:
