@@ -25,7 +25,9 @@ from planner_service.themes.things import things
 
 _WORD: Final = re.compile(r"«\d+»|\b(?:Mrs?|Ms|Dr|Prof)\.|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
 _CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
-_INVERTED: Final = re.compile(r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i)\b(?= (\w+))")
+_INVERTED: Final = re.compile(
+    r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i|(?-i:[A-Z][a-z]+))\b(?= (\w+))"
+)
 """A verb before who does it, as after "only when", "never" and "not until"."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
