@@ -13,9 +13,9 @@ from planner_service.composition.deed_patterns import says
 from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import Keyframe
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar
 from planner_service.themes.protagonist import is_person
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from scene_graphs.data_tables import read_table, table
 from scene_graphs.furniture import categories_of

@@ -19,10 +19,10 @@ from planner_service.composition.furniture_words import (
 )
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS
+from planner_service.themes.clause import Clause
 from planner_service.themes.constructions import light_readings
 from planner_service.themes.lexicon import gerund, grammar, is_adjective, is_noun, lemma_of, verb_of
 from planner_service.themes.protagonist import head_of, is_person
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of

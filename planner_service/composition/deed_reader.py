@@ -28,11 +28,11 @@ from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_embeddings import ByHeart
 from planner_service.scripts.script_words import affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import Words, grammar, lemma_of
 from planner_service.themes.no_deeds import is_state
 from planner_service.themes.opening_words import comes_in, opening_of
 from planner_service.themes.protagonist import head_of, is_name, is_person
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
 from scene_graphs.data_tables import read_table

@@ -13,9 +13,9 @@ from planner_service.composition.deed_table import deed_table
 from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.opening_words import meant_by_it
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.things import things
 
 _REMEMBERED: Final = 6

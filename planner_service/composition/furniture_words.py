@@ -8,8 +8,8 @@ from typing import Final
 
 from planner_service.composition.deed_table import deed_table
 from planner_service.scripts.script_words import affords
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, is_noun, lemma_of, verb_of
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture

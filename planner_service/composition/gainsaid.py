@@ -11,7 +11,7 @@ from planner_service.composition.caption_senses import only_in
 from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import Keyframe
 from planner_service.scripts.script_words import affords
-from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.clause import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
 

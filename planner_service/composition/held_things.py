@@ -20,8 +20,8 @@ from planner_service.scripts.caption_fallbacks import usual
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, lemma_of
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_plural, tokens_of

@@ -53,10 +53,10 @@ from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScript
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.opening_words import Kind, opening_of
 from planner_service.themes.protagonist import head_of, names_somebody
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
 

@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from typing import Final
 
 from planner_service.scripts.script import PlannedKeyframe
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.protagonist import is_person
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
 from planner_service.themes.verb_finder import Token, tokens_of

@@ -17,8 +17,8 @@ from planner_service.composition.furniture_words import where
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.clause import Clause
 from planner_service.themes.opening_words import opening_of
-from planner_service.themes.sentence_parser import Clause
 from scene_graphs import furniture
 
 AHEAD: Final = 3

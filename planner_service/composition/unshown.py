@@ -14,10 +14,10 @@ from planner_service.composition.furniture_words import pieces_in
 from planner_service.composition.other_people import others_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
+from planner_service.themes.clause import Clause
 from planner_service.themes.details import details_of
 from planner_service.themes.lexicon import grammar, lemma_of
 from planner_service.themes.opening_words import opening_of
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of

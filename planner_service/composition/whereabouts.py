@@ -8,9 +8,9 @@ from typing import Final
 
 from planner_service.composition.deed_lexicon import Deed, thing_of
 from planner_service.composition.furniture_words import pieces_in
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import head_of
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from scene_graphs.furniture import class_of

@@ -9,7 +9,7 @@ from motion_backend.motion import Does, Skill
 from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
-from planner_service.themes.sentence_parser import Clause
+from planner_service.themes.clause import Clause
 from planner_service.themes.theme_words import theme_words
 from scene_graphs.furniture import canonical, categories_of, class_of, typical_size
 from scene_graphs.furniture_shapes import parts

@@ -19,8 +19,9 @@ from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import EMOTIONS, Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import repair
 from planner_service.themes.beats import MAX_THEME_LENGTH, ReadBeat, read_beats, rooms_in
+from planner_service.themes.clause import Clause
 from planner_service.themes.protagonist import head_of, hero_of, is_person, pronouns_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.verb_finder import is_plural
 
 _MAX_DEEDS: Final = 6

@@ -26,10 +26,11 @@ from planner_service.narration.story_words import story_words
 from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.scripts.script import Beat
 from planner_service.themes.beats import EXPRESSIONS
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, is_verb, kinds_of, lemma_of, past
 from planner_service.themes.prose import prose_of
 from planner_service.themes.protagonist import called, head_of, hero_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_plural
@@ -79,7 +80,7 @@ def retell(theme: str, beats: Sequence[Beat], voice: Voice) -> Retelling:
     hero = hero or ("you" if ordered else "")  # "Hide under the table, then crawl out"
     own = called(clauses, hero) or hero.lower()
     told = Retelling(tokens_of_theme(theme))
-    told.stretches = [_with_verb(one, beats, clauses) for one in located(told.tokens, beats)]
+    told.stretches = [_with_verb(told.tokens, one, beats, clauses) for one in located(told.tokens, beats)]
     told.ends = sentence_ends(theme, told.tokens)
     several = own in _PLURAL or (own not in _SINGULAR and is_plural(head_of(hero).lower()))  # "two friends dance, sing"
     together = {one.text.split()[0].lower() for one in clauses if _are_several(one.doer)}  # "Emma and Luca | quarrel"
@@ -98,10 +99,14 @@ def _are_several(doer: str) -> bool:
     return doer.lower() in _PLURAL or " and " in doer or is_plural(head_of(doer).lower())
 
 
-def _with_verb(stretch: Stretch, beats: Sequence[Beat], clauses: Sequence[Clause]) -> Stretch:
+def _with_verb(tokens: Sequence[Token], stretch: Stretch, beats: Sequence[Beat], clauses: Sequence[Clause]) -> Stretch:
     """A stretch without a verb where the words of its beat have none: "cups in the sink"."""
     text = beats[stretch.beat].text
-    told = [one.verb for one in clauses if text == one.text or text.endswith(f" {one.text}")]
+    own = [one for one in clauses if text == one.text or text.endswith(f" {one.text}")]
+    if own and own[0].led:  # "a yawn | escapes Martha"
+        words = [at for at in range(stretch.start, stretch.end) if tokens[at].is_word]
+        return replace(stretch, verb=words[own[0].led]) if len(words) > own[0].led else stretch
+    told = [one.verb for one in own]
     return replace(stretch, verb=None) if told and not (any(told) or _is_order(text)) else stretch
 
 
@@ -311,7 +316,9 @@ def _say_who(voice: Voice, told: Retelling, beats: Sequence[Beat]) -> None:
         later = {token.told.lower() for token in told.tokens[stretch.end : told.end_of(stretch)]}
         alone = later.isdisjoint({"he", "she", "they", *voice.name.lower().split()[-1:]})  # "slighted, Ida withdrew"
         asked = beats[stretch.beat].kind in ("deed", "feeling") and not beats[stretch.beat].who
-        if opens and alone and verb is not None and asked and _is_finite(verb):
+        led = told.tokens[stretch.start : stretch.verb or stretch.start]
+        named_so = any(one.is_word and one.low not in grammar().adverbs and not one.low.endswith("ly") for one in led)
+        if opens and alone and verb is not None and asked and not named_so and _is_finite(verb):
             first = told.tokens[stretch.start]
             first.told = first.told[:1].lower() + first.told[1:]
             first.before, first.is_name = f"{voice['they'] if named else voice.name} ", True

@@ -17,8 +17,9 @@ from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.scripts.script_repair import NO_WAY_TO_GO
 from planner_service.tasks.household import household, in_hand, is_one, told_by
 from planner_service.tasks.task_plan import MAX_ACTION_LENGTH, TaskError
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, lemma_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 

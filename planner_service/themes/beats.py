@@ -12,12 +12,13 @@ from motion_backend.motion import Emotion
 from planner_service.scripts.acted_beats import RESTS
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
+from planner_service.themes.clause import Clause
 from planner_service.themes.language import ANOTHER, ENGLISH, foreign_language, language_of
 from planner_service.themes.lexicon import grammar, is_known_word, lemma_of, participle
 from planner_service.themes.memories import RECALLING, recalled_in
 from planner_service.themes.no_deeds import tells_no_deed
 from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import is_adverb, tokens_of

@@ -1,4 +1,4 @@
-"""A stretch of a sentence with one verb: who does what, whether it is denied, and how it is joined to what is told before."""
+"""A stretch of a sentence with one verb: who does what, whether it is denied, and what joins it to the one before."""
 
 from __future__ import annotations
 
@@ -35,6 +35,8 @@ class Clause:
     """What is said in it."""
     plainly: str = ""
     """What is done in plain words, from its verb on, where the clause says it in others: "washes the dishes"."""
+    led: int = 0
+    """Words of its text before its written verb, where that is not what it means: of "A yawn | escapes"."""
     sentence: int = 0
     """Index of its sentence in the text."""
     place: int = 0

@@ -40,11 +40,23 @@ _ON: Final = frozenset(("on", "off", "out", "back", "away", "down", "up"))
 
 
 @table
+class LimbRow:
+    """What a part of the body does, and what whoever's it is does in it; `then` are words that may follow its verb, and
+    "..." in what is meant stands for the rest."""
+
+    limb: Words
+    does: Words
+    then: Words
+    means: str
+
+
+@table
 class ConstructionWords:
     """data/constructions.toml."""
 
     events: dict[str, str]
     words: dict[str, Words]
+    limb: tuple[LimbRow, ...]
 
 
 @cache
@@ -64,9 +76,9 @@ def meant(clause: Clause) -> list[Clause]:
     """The clause with the deed that it means, where its verb is none; and a second one where it tells of two."""
     if made := _made_to(clause):
         return made
-    if clause.quotes or clause.aside:
+    if clause.quotes or (clause.aside and clause.verb):
         return [clause]
-    for construction in _CONSTRUCTIONS:
+    for construction in _CONSTRUCTIONS if clause.verb else (_alone,):
         if found := construction(clause):
             return found
     return [clause]
@@ -78,11 +90,13 @@ def _words(name: str) -> frozenset[str]:
 
 def _meaning(clause: Clause, words: Sequence[str], subject: str = "") -> Clause:
     """The clause with another deed and doer; what was its subject stands in its text."""
-    told = clause.text.lower().startswith(clause.subject.lower()) or clause.subject == subject
+    told = clause.subject in ("", subject) or clause.text.lower().startswith(f"{clause.subject.lower()} ")
     text = clause.text if told else f"{clause.subject} {clause.text}"
+    led = 0 if told else len(clause.subject.split())
     lemmas = (words[0], *map(lemma_of, words[1:]))
     plainly = " ".join((third_person(words[0]), *words[1:]))
-    return replace(clause, text=text, subject=subject, verb=words[0], lemmas=lemmas, plainly=plainly, absolute=False)
+    means = replace(clause, subject=subject, verb=words[0], lemmas=lemmas, plainly=plainly, absolute=False)
+    return replace(means, text=text, led=led)
 
 
 def _after(clause: Clause) -> tuple[str, ...]:
@@ -147,19 +161,37 @@ def _of_event(clause: Clause) -> list[Clause]:
     elsewhere = theme_words()["no_heroes"] | theme_words()["wheres"] | {"street", "neighbour", "neighbor"}
     if not who and not elsewhere.isdisjoint(clause.lemmas[1:]):
         return []  # "laughter comes from the street"
-    words = ("fall", "asleep") if event == "sleep" and not clause.denied else (event,)
-    words = (event, "his", "head") if event == "shake" else words
+    falls = event == "sleep" and not clause.denied
+    words = ("fall", "asleep") if falls else (event, "his", "head") if event == "shake" else (event,)
     return [replace(_meaning(clause, words, who), unable=clause.unable or (clause.denied and event == "sleep"))]
 
 
-def _of_eyes(clause: Clause) -> list[Clause]:
-    """Eyes are who looks: "her gaze wanders round the room"."""
-    head = lemma_of(_head(clause.subject))
-    if head not in _words("looking") or clause.verb not in _words("looks"):
+def _of_limbs(clause: Clause) -> list[Clause]:
+    """A limb moves as whoever's it is does something: "her gaze wanders round the room", "his arms go round her"."""
+    head, after = lemma_of(_head(clause.subject)), _after(clause)
+    words = [word for word in after if word not in ("slowly", "quickly", "gently")]
+    for row in _known().limb:
+        if head not in row.limb or clause.verb not in row.does:
+            continue
+        if row.then and (not words or words[0] not in row.then):
+            continue
+        rest = words[bool(row.then) :]
+        plainly = [one for word in row.means.split() for one in (rest if word == "..." else [word])]
+        return [_meaning(clause, plainly, _owner(clause.subject))]
+    return []
+
+
+def _in_event(clause: Clause) -> list[Clause]:
+    """An event is how a body moves: "his mouth opens in a yawn", "heaves with sobs", "bursts into tears"."""
+    limb = lemma_of(_head(clause.subject)) in theme_words()["body"] | {"lip", "body"}
+    if not (limb or clause.verb in _words("shaking")):
         return []
     after = _after(clause)
-    after = ("at", *after) if after and after[0] in grammar().marks else after
-    return [_meaning(clause, ("look", *after), _owner(clause.subject))]
+    at = next((at for at, word in enumerate(after) if word in ("in", "with", "into")), None)
+    rest = after[at + 1 :] if at is not None else ()
+    found = _events_in(rest) or ([(event,)] if rest and (event := event_of(rest[0])) else [])
+    who = _owner(clause.subject) if limb else clause.subject
+    return [_meaning(clause, event, who) for event in found if event[0] not in _words("looking")]
 
 
 def _of_hands(clause: Clause) -> list[Clause]:
@@ -174,8 +206,6 @@ def _of_hands(clause: Clause) -> list[Clause]:
     if not led or not own.isdisjoint(map(lemma_of, after)):
         return []
     verb = "touch" if clause.verb in _words("finds") | {"be"} else clause.verb
-    if clause.verb in ("go", "move", "stray", "wander", "dart", "shoot", "fly", "come"):
-        return [_meaning(clause, ("reach", "for", *after[1:]), _owner(clause.subject))]
     return [_meaning(clause, (verb, *after), _owner(clause.subject))]
 
 
@@ -186,7 +216,12 @@ def _carried(clause: Clause) -> list[Clause]:
         return []
     who, size = _undergoer(clause)
     after = _after(clause)[size:]
-    if not who or size > _FEWEST or not after or after[0] not in grammar().prepositions | _ON | {"upstairs", "downstairs"}:
+    if (
+        not who
+        or size > _FEWEST
+        or not after
+        or after[0] not in grammar().prepositions | _ON | {"upstairs", "downstairs"}
+    ):
         return []
     if {"place", "back", "time", "mind", "sleep"} & set(after) and not _ON & set(after[:1]):
         return []
@@ -213,14 +248,24 @@ def _way(clause: Clause) -> list[Clause]:
     """Somebody goes a way, doing something else: "yawns his way to the bathroom"."""
     after = _after(clause)
     at = next((at for at, word in enumerate(after[:3]) if word == "way"), 0)
-    goes = after[at + 1 : at + 2] and after[at + 1] in ("to", "into", "across", "along", "down", "up", "out", "around", "towards")
+    goes = after[at + 1 : at + 2] and after[at + 1] in (
+        "to",
+        "into",
+        "across",
+        "along",
+        "down",
+        "up",
+        "out",
+        "around",
+        "towards",
+    )
     if not at or after[at - 1] not in _OWNERS or not goes or not event_of(clause.verb):
         return []
     return [clause, replace(_meaning(clause, ("walk", *after[at + 1 :]), clause.subject), joint="ing")]
 
 
 def _held(clause: Clause) -> list[Clause]:
-    """Somebody holds what is told to be held, or holds themself so: "a towel clutched to her chest", "legs drawn up"."""
+    """Somebody does what is told as done, or holds themself so: "a towel clutched to her chest", "legs drawn up"."""
     head, words = lemma_of(_head(clause.subject)), [token.low for token in tokens_of(clause.text)]
     done, limb = participle(clause.verb), head in theme_words()["body"]
     if done not in words[:4] or done == clause.verb or not grammar().auxiliaries.isdisjoint(words):
@@ -247,7 +292,7 @@ def _received(clause: Clause) -> list[Clause]:
     who, size = _undergoer(clause)
     if not who or size > _FEWEST or not {"sit", "lie"} & {*able}:
         return []
-    rests = ("lie", "on") if "lie" in able and "sit" not in able or head.endswith("bed") else ("sit", "in")
+    rests = ("lie", "on") if ("lie" in able and "sit" not in able) or head.endswith("bed") else ("sit", "in")
     return [_meaning(clause, (*rests, *clause.subject.lower().split()), who)]
 
 
@@ -268,6 +313,8 @@ def _moved(clause: Clause) -> list[Clause]:
         return [_meaning(clause, ("put" if way == "on" else "take", way, *thing))]
     if clause.verb == "come":
         return [_meaning(clause, ("take", "off", *thing))] if worn and way == "off" else []
+    if way == "to" and lemma_of(after[-1]) in theme_words()["body"]:  # "the glass goes to his lips"
+        return [_meaning(clause, ("put" if head == "phone" else "raise", *thing, *after))]
     placed = way in ("in", "into", "on", "onto", "under", "back", "over", "to") and len(after) > 1
     lies = after[-1] not in ("voicemail", "floor", "pieces", "waste", "ringing")
     return [_meaning(clause, ("put", *thing, *after))] if placed and lies else []
@@ -288,10 +335,14 @@ def _done_to(clause: Clause) -> list[Clause]:
         return []
     rest = tuple(words[at + 1 :])
     by = rest.index("by") if "by" in rest else len(rest)
-    agent = next((token.text for token in tokens_of(clause.text)[::-1] if is_somebody(token.text)), "") if by < len(rest) else ""
+    agent = (
+        next((token.text for token in tokens_of(clause.text)[::-1] if is_somebody(token.text)), "")
+        if by < len(rest)
+        else ""
+    )
     if by < len(rest) and not agent:
         return []  # "the room is lit by a candle"
-    happens = clause.verb == "get" or agent or rest[:1] and rest[0] in _ON | {"open", "into", "onto"}
+    happens = clause.verb == "get" or agent or (rest[:1] and rest[0] in _ON | {"open", "into", "onto"})
     if not happens and (base in _words("states") or is_adjective(words[at])):
         return []
     particle = rest[:1] if rest[:1] and rest[0] in _ON | {"open"} else ()
@@ -303,8 +354,10 @@ def _by_event(clause: Clause) -> list[Clause]:
     """One event is all that is told: "his only answer is a nod", "replies with a shrug", "there is a yawn"."""
     head = lemma_of(_head(clause.subject))
     says = clause.verb in _words("answering")
-    alone = not clause.subject or head in _words("answers") or clause.subject.endswith(("'s", "’s"))
-    told = clause.verb in ("be", "come", "follow") and alone
+    alone = (
+        not clause.subject or {head, _head(clause.subject)} & _words("answers") or clause.subject.endswith(("'s", "’s"))
+    )
+    told = clause.verb in ("be", "come", "follow") and bool(alone)
     if not (says or told) or clause.denied:
         return []
     after = _after(clause)
@@ -326,7 +379,7 @@ def _alone(clause: Clause) -> list[Clause]:
     before = words[: led or 0]
     if led is None or not (set(before) <= grammar().adverbs | grammar().joints or before[0] in _words("besides")):
         return []
-    return [_meaning(clause, event) for event in _events_in(words[led:])]
+    return [replace(_meaning(clause, event), aside=False) for event in _events_in(words[led:])]
 
 
 def _events_in(words: Sequence[str]) -> list[tuple[str, ...]]:
@@ -352,11 +405,16 @@ def light_readings(lemmas: Sequence[str]) -> list[tuple[str, ...]]:
     """What a verb means that only says that the deed of a noun is done: "gives the pot a stir" is stirs the pot."""
     if not lemmas or lemmas[0] not in _words("light"):
         return []
-    marks = [at for at, word in enumerate(lemmas[:7]) if at and word in ("a", "an", "another", "one", "some", "the")]
-    for at in reversed(marks):
+    ones = [at for at, word in enumerate(lemmas[:7]) if at and word in ("a", "an", "another", "one", "some")]
+    given = lemmas[0] == "give" and len(lemmas) > 1 and lemmas[1] in grammar().marks - {"a", "an"}  # "gives the pot a"
+    for at in ones[-1:] if given else [one for one in ones[:1] if one <= _FEWEST]:
         for place in range(at + 1, min(at + _MOST_BEFORE_EVENT + 1, len(lemmas))):
             word, after = lemmas[place], lemmas[place + 1 :]
-            if verb_of(word) == word and is_noun(word) and (not after or not is_noun(after[0]) or after[0] in grammar().prepositions):
+            if (
+                verb_of(word) == word
+                and is_noun(word)
+                and (not after or not is_noun(after[0]) or after[0] in grammar().prepositions)
+            ):
                 rest = after[1:] if after[:1] == ("of",) else after
                 return [(event_of(word) or word, *lemmas[1:at], *rest)]
             if not (is_adjective(word) or is_adverb(word)):
@@ -365,8 +423,9 @@ def light_readings(lemmas: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
-    _of_eyes,
+    _of_limbs,
     _of_event,
+    _in_event,
     _of_hands,
     _held,
     _way,
@@ -375,5 +434,4 @@ _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
     _moved,
     _done_to,
     _by_event,
-    _alone,
 )

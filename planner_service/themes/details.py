@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import Final
 
 from planner_service.themes.asides import MANNER
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, lemma_of, verb_of
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, tokens_of

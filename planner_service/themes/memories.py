@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import is_third_person
 from planner_service.themes.theme_words import theme_words
 

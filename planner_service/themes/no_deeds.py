@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import Final
 
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, is_adjective, lemma_of, participle, verb_of
 from planner_service.themes.protagonist import head_of
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import tokens_of

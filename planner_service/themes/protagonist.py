@@ -13,8 +13,9 @@ from typing import Final
 from motion_backend.motion import Character
 from planner_service.scripts.script import MAX_NAME_LENGTH
 from planner_service.themes.asides import ARTICLES, OWNERS
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import grammar, is_third_person, is_verb, kinds_of, lemma_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import NAMING, is_plural, tokens_of

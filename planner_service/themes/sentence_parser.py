@@ -115,12 +115,18 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
                 parts = [replace(part, perfect=bool(part.verb)) for part in parts]
             parts = _sharing(_main(told[-1]), parts) if told else parts
             parts = [one for part in parts for one in meant(part)]
-            own = _main(parts).subject
+            own = _main(parts).subject or next(
+                (one.subject for one in parts if one.verb and one.subject and not one.aside), ""
+            )
             if own.lower() in RELATIVES and doer:
                 own = _told_last(told, own.lower()) or doer
             told.append(
                 [
-                    replace(part, doer=part.subject if part.aside else (part.plainly and part.subject) or own or doer, place=len(told))
+                    replace(
+                        part,
+                        doer=part.subject if part.aside else (part.plainly and part.subject) or own or doer,
+                        place=len(told),
+                    )
                     for part in parts
                 ]
             )
@@ -133,8 +139,13 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     return tuple(in_story_time(sentences, found))
 
 
+def _doer(part: Clause, doer: str) -> str:
+    """Who does a clause: its own subject where it tells of a noun, or means another than is written."""
+    return part.subject if part.aside else (part.plainly and part.subject) or doer
+
+
 def _as_supposed(parts: Sequence[Clause], pieces: Sequence[Piece]) -> list[Clause]:
-    """The clauses of a piece, denied where they would be so if something were: "if she were braver, | she would knock"."""
+    """The clauses of a piece, denied where that would be so if something were: "if she were he, | she would knock"."""
     supposed = any(piece.joint in _SUPPOSING or piece.tokens[0].low in _SUPPOSING for piece in pieces)
     would = re.compile(r"^(?:\w+ )?(?:would|could|might)\b", re.IGNORECASE)
     return [replace(one, denied=True) if supposed and would.match(one.text) else one for one in parts]
@@ -252,6 +263,10 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         for some in (*besides_of(tokens[:place], subject, before), *_of_subject(tokens[:place], subject))
         if not set(denials).issuperset(some) and some[-1].low != "and"  # "my roommate and | I"
     ]
+    if before and before[0].low in ("with", "after"):  # "With a sigh | Greta sits down"
+        first = Clause(_text(piece.source, before), "", "", _lemmas(before), piece.joint, sentence=sentence)
+        if any(one.verb for one in meant(first)):
+            return [*besides, first, *parts, *asides]
     return [*besides, _placed(parts[0], before, piece.source), *parts[1:], *asides]
 
 

@@ -109,7 +109,7 @@ def _is_named_doer(tokens: Sequence[Token], place: int) -> bool:
 
 
 def _leads_noun(current: Sequence[Token]) -> bool:
-    """Whether words end in a preposition of what follows, and none of the verb before it: "with", not "sitting down"."""
+    """Whether words end in a preposition of what follows, not of the verb before it: "with", not "sitting down"."""
     particle = len(current) > 1 and current[-1].low in _PARTICLES and current[-2].low.endswith("ing")
     return current[-1].low in grammar().prepositions and not particle
 
@@ -199,7 +199,9 @@ def _is_when(lead: Sequence[Token]) -> bool:
 
 def _whole(pieces: list[Piece]) -> list[Piece]:
     """Pieces without a verb put to the one before ("bread and butter"), or to the one after ("one evening, …")."""
-    if all(verb_place(piece.tokens) is None for piece in pieces) and all(piece.joint in ("", ",") for piece in pieces):
+    if all(verb_place(piece.tokens) is None for piece in pieces) and all(
+        piece.joint in ("", ",", "then") for piece in pieces
+    ):
         return pieces  # "stretch, shower, news"
     if _is_list(pieces):
         return [replace(one, bare=_orders(one), verbless=not _orders(one)) for one in pieces]

@@ -26,7 +26,9 @@ from planner_service.themes.things import things
 
 _WORD: Final = re.compile(r"«\d+»|\b(?:Mrs?|Ms|Dr|Prof)\.|[^\W_]+(?:['’-][^\W_]+)*|[^\w\s]", re.UNICODE)
 _CONTRACTION: Final = re.compile(r"(?i)\b(ca|wo|sha|[a-z]+?)n['’]t\b")
-_INVERTED: Final = re.compile(r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i)\b(?= (\w+))")
+_INVERTED: Final = re.compile(
+    r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i|(?-i:[A-Z][a-z]+))\b(?= (\w+))"
+)
 """A verb before who does it, as after "only when", "never" and "not until"."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
@@ -168,8 +170,14 @@ def _acts(tokens: Sequence[Token], place: int) -> bool:
         if not place and tokens[1:] and alone and not word.endswith(("ed", "ing")) and lemma_of(word) in things():
             return False  # "Boxes everywhere.", "kettle on, shoes off"
         beside = at < 0 < place and word.endswith("ing")  # "still chewing"
-        return beside or _orders(tokens, place) or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
+        return (
+            beside
+            or _orders(tokens, place)
+            or _opens(word, base, tokens[place + 1].low if place + 1 < len(tokens) else "")
+        )
     before = tokens[at].low
+    if before.endswith(("'s", "’s")) and is_noun(word) and not word.endswith(("ing", "ed")):
+        return False  # "Martha's sobs shake the bed"
     if not at and is_noun(word) and _counts(before):
         return False  # "Thirty-one essays on the table", "Wet footprints from the bath"
     if before.startswith("«") and word != base:
@@ -267,14 +275,15 @@ def _follows(tokens: Sequence[Token], at: int, place: int, base: str) -> bool:
         named = is_noun(before) or not kinds_of(before)  # "Anna put …"
         ends = _goes_on(after) or after in (",", "and")
         led = tokens[at - 1].low in _ARTICLES if at > 2 else tokens[0].low in grammar().marks | grammar().numbers
+        led |= tokens[at - 1].low.endswith(("'s", "’s")) if at else False
         goes_on = after in grammar().marks or is_noun(after)
         acts = not is_noun(word) or goes_on or (ends and led)
         two = any(token.low == "and" and two_people(tokens[: place + 1], of) for of, token in enumerate(tokens[:at]))
         return (past(base) == base and named) or two or (is_plural(before) and acts)
     rests = after.endswith("ing") and before in theme_words()["people"]  # "the father stands swaying"
     plain = not (is_noun(word) and word.endswith("s")) or rests
-    named = tokens[place + 1 : place + 2] and tokens[place + 1].text[:1].isupper()  # "a yawn escapes Martha"
-    return plain or _goes_on(after) or bool(named) or is_adjective(after) or is_noun(after)
+    names_one = any(token.text[:1].isupper() for token in tokens[place + 1 : place + 2])  # "a yawn escapes Martha"
+    return plain or _goes_on(after) or names_one or is_adjective(after) or is_noun(after)
 
 
 def _finite_follows(tokens: Sequence[Token], place: int) -> bool:

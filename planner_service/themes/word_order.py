@@ -33,10 +33,13 @@ _WHERE: Final = (
 _MOVES: Final = "go be hang wait dive hop slip hurtle"
 """Verbs that stand before who does them, beside those of postures and ways."""
 _CLEFT: Final = (
-    (re.compile(rf"^it (?:is|was) (?:only |just |once more )?(?P<who>{_WHO}) (?:who|that) (?=\w)", re.IGNORECASE), r"\g<who> "),
+    (
+        re.compile(rf"^it (?:is|was) (?:only |just |once more )?(?P<who>{_WHO}) (?:who|that) (?=\w)", re.IGNORECASE),
+        r"\g<who> ",
+    ),
     (
         re.compile(
-            r"^it (?:is|was) (?:only )?(?P<how>(?:with|on|in|at|by|under|from|into|without|over) [^,]{2,60}?) that (?=\w)",
+            r"^it (?:is|was) (?:only )?(?P<how>(?:with|on|in|at|by|under|from|into|over) [^,]{2,60}?) that (?=\w)",
             re.IGNORECASE,
         ),
         r"\g<how>, ",
@@ -51,6 +54,10 @@ _ALL_DONE: Final = re.compile(
     re.IGNORECASE,
 )
 """What is done told apart from who does it: "The first thing Axel does is | open the fridge"."""
+_TAKES: Final = re.compile(
+    rf"^it (?:takes|took|costs?) (?P<who>him|her|me|them|you|{_WHO}) [^,.]{{2,40}}? to (?P<verb>\w+)", re.IGNORECASE
+)
+"""What it takes somebody to do a thing: "It takes Bernd three tries to | get out of the chair"."""
 _DONE_ALL: Final = re.compile(
     rf"(?P<doing>\w+ing\b[^,.]*?) (?:is|was) (?:all|the only thing|what) (?:that )?(?P<who>{_PERSON}) "
     r"(?:does|did|can do|could do)$",
@@ -58,7 +65,9 @@ _DONE_ALL: Final = re.compile(
 )
 _WERE_IT: Final = re.compile(rf"^(?P<verb>were|had|should) (?P<who>{_PERSON}) (?=[^,]{{2,80}}, )", re.IGNORECASE)
 """A condition without "if": "Were she braver, …"."""
-_NO_SOONER: Final = re.compile(rf"^no sooner (?P<verb>is|was|does|did) (?P<who>{_PERSON}) (?P<how>[^,]{{2,60}}?),? than ", re.IGNORECASE)
+_NO_SOONER: Final = re.compile(
+    rf"^no sooner (?P<verb>is|was|has) (?P<who>{_PERSON}) (?P<how>[^,]{{2,60}}?),? than ", re.IGNORECASE
+)
 
 
 def in_usual_order(sentence: str) -> str:
@@ -67,8 +76,11 @@ def in_usual_order(sentence: str) -> str:
         if (found := cleft.match(sentence)) and _acts(found.groupdict().get("who", "I")):
             sentence = cleft.sub(plainly, sentence)
     sentence = _ALL_DONE.sub(_does, sentence)
+    sentence = _TAKES.sub(_does, sentence)
     sentence = _DONE_ALL.sub(_is_doing, sentence)
-    sentence = _WERE_IT.sub(lambda one: f"if {one['who']} {one['verb'].lower()} " if _is_person(one["who"]) else one[0], sentence)
+    sentence = _WERE_IT.sub(
+        lambda one: f"if {one['who']} {one['verb'].lower()} " if _is_person(one["who"]) else one[0], sentence
+    )
     sentence = _NO_SOONER.sub(lambda one: f"when {one['who']} {one['verb']} {one['how']}, ", sentence)
     return _inverted().sub(_turned, sentence)
 
@@ -87,7 +99,9 @@ def _inverted() -> re.Pattern[str]:
 
 
 def _does(one: re.Match[str]) -> str:
-    return f"{one['who']} {third_person(one['verb'])}" if verb_of(one["verb"]) == one["verb"] else one[0]
+    who = {"him": "he", "her": "she", "me": "I", "them": "they"}.get(one["who"].lower(), one["who"])
+    plain = verb_of(one["verb"]) == one["verb"] and _is_person(who)
+    return f"{who} {one['verb'] if who in ('I', 'you', 'they') else third_person(one['verb'])}" if plain else one[0]
 
 
 def _is_doing(one: re.Match[str]) -> str:

@@ -14,8 +14,9 @@ from planner_service.composition.deed_lexicon import Deed, deed_of, row_of, with
 from planner_service.composition.deed_table import DeedRow, deed_table
 from planner_service.composition.furniture_words import listed_places, names_things, pieces_in, room_of, typical_of
 from planner_service.scripts.script_words import NEEDS, affords
+from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import past, third_person
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.things import things, things_called
 from scene_graphs import furniture
 

@@ -17,7 +17,8 @@ from planner_service.composition.rest_place import only_stands_for
 from planner_service.scripts.captions import captions
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.themes.beats import beats_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.clause import Clause
+from planner_service.themes.sentence_parser import clauses_of_text
 from scene_graphs import furniture
 
 CLAUSES = ("She opens the fridge", "He sits down", "She lies down on the bed", "He waters the plants", "It rains")

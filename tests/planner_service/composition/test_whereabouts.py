@@ -8,7 +8,8 @@ from motion_backend.motion import Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_table import DeedRow
 from planner_service.composition.whereabouts import Spot, Whereabouts, is_held, is_worn
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.clause import Clause
+from planner_service.themes.sentence_parser import clauses_of_text
 
 SHELF: Spot = ("living_room", "shelf")
 TABLE: Spot = ("dining_room", "table")

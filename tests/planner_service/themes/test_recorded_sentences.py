@@ -14,9 +14,10 @@ from planner_service.composition.unshown import unshown
 from planner_service.narration.narrative_voice import Voice
 from planner_service.narration.retold_theme import retell
 from planner_service.themes.beats import ReadBeat, ThemeError, beats_of
+from planner_service.themes.clause import Clause
 from planner_service.themes.details import details_of
 from planner_service.themes.protagonist import cast_by, hero_of
-from planner_service.themes.sentence_parser import Clause, clauses_of_text
+from planner_service.themes.sentence_parser import clauses_of_text
 
 SENTENCES: Final = (
     "Maria comes home from work, kicks off her shoes and falls onto the couch.",
