@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from scene_graphs.home import Home
 
 
+HUNG = frozenset({"ceiling_lamp", "pendant_lamp"})
+"""Furniture that hangs from a ceiling, which no picture has, and goes with it where it is before a body."""
 FOV = 0.62
 PITCH = 0.36
 """About 20 degrees from above."""
@@ -179,7 +181,8 @@ class Sight:
     @staticmethod
     def at(home: Home, place: tuple[float, float], reach: float) -> Sight:
         """Around a place [x, z], with the furniture within reach (metres)."""
-        near = tuple(o for o in home.objects if np.hypot(o.position[0] - place[0], o.position[2] - place[1]) < reach)
+        there = (o for o in home.objects if o.category not in HUNG)  # which is left away before a body
+        near = tuple(o for o in there if np.hypot(o.position[0] - place[0], o.position[2] - place[1]) < reach)
         sides = tuple(side for wall in home.walls if (side := Side.of(wall, home)) is not None)
         against = tuple(tuple(side for side in sides if side.bears(placed)) for placed in near)
         return Sight(home, home.room_at(place), near, Boxes.of(near), sides, against)
@@ -292,7 +295,11 @@ class Boxes:
         left = ~np.isin(self.piece, pieces)
         return Boxes(self.low[left], self.high[left], self.origin[left], self.turn[left], self.piece[left])
 
-    def hide(self, eye: Array, points: Array) -> NDArray[np.bool_]:
+    def wider(self, metres: float) -> Boxes:
+        """The same, by so much to every side."""
+        return replace(self, low=self.low - metres, high=self.high + metres)
+
+    def hide(self, eye: Array, points: NDArray[np.floating]) -> NDArray[np.bool_]:
         """Which points (N, 3) lie behind any of them, seen from an eye. (N,)."""
         start = np.einsum("bij,bj->bi", self.turn, eye - self.origin)[:, None]
         ray = np.einsum("bij,nj->bni", self.turn, points - eye)

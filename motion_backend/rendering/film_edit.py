@@ -1,5 +1,5 @@
 """What a film leaves out of a motion: the middle of walks under which nothing is told, cut where one stride goes over
-into another. The motion itself stays whole.
+into another, and its end where nothing is done any more. The motion itself stays whole.
 """
 
 from __future__ import annotations
@@ -26,6 +26,10 @@ WORTH: Final = 1.0
 """Seconds from which on it is worth a cut."""
 FITS: Final = 0.3
 """Seconds by which the cut is moved at either end, so that the legs after it stand as they did before."""
+ENDS: Final = 1.5
+"""Seconds for which who does no more is seen at the end."""
+STIRS: Final = 0.35
+"""Metres a second of the fastest joint from which on something is done: who only breathes and shifts is slower."""
 LEGS: Final = slice(1, 9)
 """The joints whose turns tell where in a stride a body is: hips, knees, ankles, and the spine between."""
 
@@ -36,6 +40,8 @@ class FilmEdit:
 
     kept: tuple[Frames, ...]
     """In order; none is empty."""
+    frames: int = 0
+    """Of the whole motion, if its end is not kept."""
 
     @staticmethod
     def whole(frames: int) -> FilmEdit:
@@ -43,14 +49,14 @@ class FilmEdit:
         return FilmEdit(((0, frames),) if frames else ())
 
     @staticmethod
-    def of(motion: Motion, told: Sequence[Frames]) -> FilmEdit:
+    def of(motion: Motion, told: Sequence[Frames], ends: int | None = None) -> FilmEdit:
         """The edit of a motion during which words are shown in these frames, in order: no walk goes on for long
-        without any."""
-        gaps = list(_left_out(motion, told))
-        edges = [0, *(edge for gap in gaps for edge in gap), len(motion)]
-        return FilmEdit(
-            tuple((start, stop) for start, stop in zip(edges[::2], edges[1::2], strict=True) if stop > start)
-        )
+        without any, and nothing is kept from frame `ends` on."""
+        last = len(motion) if ends is None else min(ends, len(motion))
+        gaps = [gap for gap in _left_out(motion, told) if gap[1] < last]
+        edges = [0, *(edge for gap in gaps for edge in gap), last]
+        kept = ((start, stop) for start, stop in zip(edges[::2], edges[1::2], strict=True) if stop > start)
+        return FilmEdit(tuple(kept), len(motion))
 
     def __len__(self) -> int:
         """Frames of the film."""
@@ -58,12 +64,23 @@ class FilmEdit:
 
     @cached_property
     def left_out(self) -> tuple[Frames, ...]:
-        """The frames of the motion between two cuts that are in no picture."""
-        return tuple((one[1], other[0]) for one, other in pairwise(self.kept))
+        """The frames of the motion between two cuts, and at its end, that are in no picture."""
+        return tuple((one[1], other[0]) for one, other in pairwise([*self.kept, (self.frames, self.frames)])
+                     if other[0] > one[1])  # fmt: skip
 
     def frame(self, frame: int) -> int:
         """The film's frame that shows one of the motion, or what follows where that is left out."""
         return sum(min(max(frame - start, 0), stop - start) for start, stop in self.kept)
+
+
+def last_deed(motion: Motion, since: int) -> int:
+    """The frame at which a film leaves who does no more: a little after the last one, not before `since`, in which a
+    joint moves fast."""
+    joints = motion.part(since, len(motion)).joint_positions().astype(np.float64)
+    fastest = motion.fps * np.linalg.norm(np.diff(joints, axis=0), axis=-1).max(axis=1, initial=0.0)
+    stirs = np.flatnonzero(fastest > STIRS)
+    done = since + (int(stirs[-1]) + 1 if len(stirs) else 0)
+    return min(done + round(ENDS * motion.fps), len(motion))
 
 
 def _left_out(motion: Motion, told: Sequence[Frames]) -> Iterator[Frames]:

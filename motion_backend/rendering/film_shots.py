@@ -19,12 +19,13 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points, prop_tracks
 from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
+from motion_backend.rendering.film_counterpart import Counterpart, Kind
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
 from motion_backend.rendering.film_edit import FilmEdit, Frames
 from motion_backend.rendering.film_entrance import Entrance
-from motion_backend.rendering.film_outlook import Outlook
 from motion_backend.rendering.film_set import FilmSet
 from motion_backend.rendering.film_sight import Appearances
+from motion_backend.rendering.hand_deed import HANDS
 from motion_backend.rendering.motion_figures import lying_solids
 from motion_backend.rendering.rasterizer import Camera, orbit
 from motion_backend.rendering.renderer import Solid
@@ -86,12 +87,16 @@ FROM_INSIDE: Final = 1.0
 """What it counts to be in the room, from near."""
 AT_DOOR: Final = 3.0
 """What it counts in the first shot to see the door by which somebody comes in."""
-TO_WINDOW: Final = 4.0
-"""What it counts to see the window that somebody looks out of."""
+TO_COUNTERPART: Final = 4.0
+"""What it counts to see the window that somebody looks out of, the door they wait at, the mirror they are before,"""
+SHOWN: Final = 0.3
+"""and how well window and door must be seen, if any camera sees them so that shows the body as well."""
 TO_FRONT: Final = 3.0
 """What it counts to see the front of what is touched well,"""
 FRONTAL: Final = 0.4
 """and how well it must be seen, if any camera sees it so: from the side a cabinet is a board that hides the hand."""
+MOVES: Final = 0.07
+"""Metres a second of a hand from which on it does something: those of folded arms stir."""
 ASIDE: Final = (0.19, 0.12, 0.06)
 """Radians by which a camera is turned to the side, at most so that a body that was in the middle is at a third."""
 OFF_CENTRE: Final = 0.2
@@ -168,8 +173,9 @@ class _Director:
 
     def close_up(self, close: Framing, before: FilmShot) -> FilmShot | None:
         """The same from near; None where something hides it from all cameras, or is in the way of all, and of who
-        looks out of a window, which would not be seen."""
-        views = [] if self._outlook(close) is not None else self._near(close, before)
+        looks out of a window or is at a door, which would not be seen."""
+        there = self._counterpart(close)
+        views = self._near(close, before) if there is None or there.kind is Kind.MIRROR else []
         if not views:
             return None
         shot, enough = self._best(close, views)
@@ -180,10 +186,15 @@ class _Director:
         that shows most; and whether it is enough."""
         start, stop = framing.start, framing.stop
         bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
-        if self._outlook(framing) is not None:
-            bodies = replace(bodies, face=None)
-        found = [self._looked(framing, bodies, view) for view in views[:TRIES]]
-        best = max(found, key=lambda one: one.worth)
+        counterpart = self._counterpart(framing)
+        if counterpart is not None:
+            bodies = replace(bodies, face=None if counterpart.kind is Kind.WINDOW else bodies.face, profile=True)
+        telling = [view for view in views if view.tells]
+        tried = telling[:TRIES] or views[:TRIES]
+        best = max((self._looked(framing, bodies, view) for view in tried), key=lambda one: one.worth)
+        if not any(best.worth[0]):  # what tells of it hides who does it
+            others = [self._looked(framing, bodies, view) for view in views[:TRIES] if not view.tells]
+            best = max([best, *others], key=lambda one: one.worth)
         aside = [self._looked(framing, bodies, view) for view in best.view.aside(self.aspect)]
         best = max([best, *aside], key=lambda one: one.worth)
         return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), best.worth[0][0]
@@ -210,18 +221,18 @@ class _Director:
         start, stop = framing.start, framing.stop
         frames = _sampled(start, stop)
         poses = self.joints[frames]
-        shown: list[tuple[Entrance | Outlook | None, float]] = [
-            (Entrance.of(self.set.home, self.motion) if start == 0 else None, AT_DOOR),
-            (self._outlook(framing), TO_WINDOW),
-        ]
-        openings = [(one, worth) for one, worth in shown if one is not None]
-        points = np.concatenate([self._reached(start, stop), *(one.corners for one, _ in openings)])
-        watched = np.empty(0, np.int64) if shown[1][0] is not None else self._watched(frames, framing.deed)
+        entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
+        there = self._counterpart(framing)
+        openings = [one.corners for one in (entrance, there) if one is not None]
+        points = np.concatenate([self._reached(start, stop), *openings])
+        behind = there is not None and there.kind is Kind.WINDOW
+        watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         front = self._front(framing, sight)
-        widest = BEYOND if front is not None else PROFILE if framing.deed and not framing.gesture else QUARTER
-        yaws = _yaws(front)
+        before_it = front is not None or there is not None
+        widest = BEYOND if before_it else PROFILE if framing.deed and not framing.gesture else QUARTER
+        yaws = _yaws(front if front is not None or there is None else there.front)
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])), yaws)
         scored = []
         for pitch in PITCHES:
@@ -235,8 +246,11 @@ class _Director:
                     score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
                     score -= HAND_HIDDEN * sight.hidden(camera, self._doing(framing))
-                score += sum(worth * sight.shows(camera, one.corners, one.side) for one, worth in openings)
-                scored.append(_View(score - self._broken(camera, before, start), camera, points))
+                score += AT_DOOR * sight.shows(camera, entrance.corners, entrance.side) if entrance is not None else 0.0
+                told = sight.shows(camera, there.corners, there.side) if there is not None else 1.0
+                score += TO_COUNTERPART * told - self._broken(camera, before, start)
+                tells = told >= SHOWN or (there is not None and there.kind is Kind.MIRROR)
+                scored.append(_View(score, camera, points, tells))
         return _sorted(_frontal(scored, front))
 
     def _reached(self, start: int, stop: int) -> Array:
@@ -264,12 +278,25 @@ class _Director:
         touched = any(p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop for p in self.motion.phases)
         return sight.front(self.joints[stop - 1, framing.hands[0]]) if framing.hands and touched else None
 
-    def _outlook(self, framing: Framing) -> Outlook | None:
-        """The window that the body looks out of; none where it makes gestures, which are seen from before."""
-        cut = slice(framing.start, framing.stop)
-        if framing.gesture:
-            return None
-        return Outlook.of(self.set.home, self.motion, self.joints[cut], self.turns[cut])
+    def _counterpart(self, framing: Framing) -> Counterpart | None:
+        """What the body stands before. Of who touches something no window, at which a desk may stand; of who makes
+        gestures, which are seen from before, no more than a mirror."""
+        start, stop = framing.start, framing.stop
+        found = Counterpart.of(self.set.home, self.motion, self.joints[start:stop], self.turns[start:stop])
+        if found is None or found.kind is Kind.MIRROR:
+            return found
+        touches = any(p.kind is PhaseKind.TOUCH and p.start < stop and p.stop > start for p in self.motion.phases)
+        elsewhere = found.kind is Kind.WINDOW if touches else self._moves(framing)
+        return None if elsewhere else found
+
+    def _moves(self, framing: Framing) -> bool:
+        """Whether hands that do something go on moving, most of the time: folded arms wait."""
+        if framing.deed is None:
+            return False
+        start, stop = framing.deed
+        hands = self.joints[start:stop, HANDS] - self.joints[start:stop, [0]]
+        speed = self.motion.fps * np.linalg.norm(np.diff(hands, axis=0), axis=-1)
+        return bool(np.median(speed, axis=0).max() > MOVES)
 
     def _near(self, close: Framing, before: FilmShot) -> list[_View]:
         """Cameras near a face, a quarter turned, or beside an arm that touches, with whose head and
@@ -330,6 +357,8 @@ class _View(NamedTuple):
     camera: Camera
     points: Array = np.empty((0, 3))
     """What is in its picture wherever it is turned to, (N, 3); none where it is not turned."""
+    tells: bool = True
+    """Whether it shows the window or door that the body stands before, if there is one."""
 
     def aside(self, aspect: float) -> Iterator[_View]:
         """The same turned to either side as far as it goes, up to where the body has a third of the picture before or
@@ -338,7 +367,7 @@ class _View(NamedTuple):
             cameras = (_turned(self.camera, side * turn) for turn in ASIDE)
             turned = next((camera for camera in cameras if _holds(camera, self.points, aspect)), None)
             if turned is not None:
-                yield _View(self.score - OFF_CENTRE, turned)
+                yield _View(self.score - OFF_CENTRE, turned, tells=self.tells)
 
 
 class _Looked(NamedTuple):

@@ -144,6 +144,8 @@ class Appearances:
     """In which frames they do. (T,)."""
     held: tuple[Array, ...] = ()
     """Points of what is in the hands, (N, 3) each, of as many frames; N may be none."""
+    profile: bool = False
+    """Whether a face is asked for no more than in profile, beside what it looks at."""
 
     @staticmethod
     def of(motion: Motion, framing: Framing, aspect: float, props: Sequence[PropTrack] = ()) -> Appearances:
@@ -214,7 +216,8 @@ class _Picture:
         face = self._face_share()
         if face is None:
             return Look(shown, appeal, handed=handed)
-        enough = BESIDE_DEED if bodies.doing is not None and bodies.doing.any() else ENOUGH_FACE
+        profile = bodies.profile or (bodies.doing is not None and bodies.doing.any())
+        enough = BESIDE_DEED if profile else ENOUGH_FACE
         return Look(shown, appeal + TO_FACE * min(face / enough, 1.0), face >= FACED[bodies.subject], handed)
 
     @cached_property

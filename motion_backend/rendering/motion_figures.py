@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from motion_backend.body.character_mesh import build_character
 from motion_backend.body.face_track import face_track
 from motion_backend.body.skinning import SkinnedMesh, skin
 from motion_backend.props import PropTrack, prop_tracks
+from motion_backend.rendering.camera import HUNG, Boxes
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid
 from motion_backend.rotations import Array
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
     from scene_graphs.home import Home
     from scene_graphs.layout import Placed
 
+HUNG_FREE: Final = 0.2
+"""Metres about the lines from an eye to a body within which nothing hangs."""
+HANGS: Final = "ceiling "
+"""Before the names of what hangs from a ceiling."""
 ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "ceiling")
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
@@ -156,10 +161,14 @@ class Prop:
     """What is left of a wall where it would stand in the way."""
     borne: Borne | None = None
     """What it is part of, if that stands tall against a wall."""
+    hung: Boxes | None = None
+    """What it is part of, if that hangs from the ceiling."""
 
     def stands_before(self, camera: Camera, points: NDArray[np.floating], room: int | None) -> bool:
         """Whether a camera leaves it away to see points (N, 3) in a room, as a doll's house is open in front."""
         eye = np.asarray(camera.eye)
+        if self.hung is not None and self.hung.hide(eye, points).any():
+            return True
         if self.side is not None and self.side.crosses(eye[[0, 2]], points[:, [0, 2]]):
             return True
         if self.borne is not None and self.borne.is_behind(eye):
@@ -182,6 +191,7 @@ def home_props(home: Home) -> list[Prop]:
     sides = [side for wall in home.walls if (side := Side.of(wall, home)) is not None]
     against = ((placed, tuple(side for side in sides if side.bears(placed))) for placed in home.objects)
     borne = {placed.id: Borne(placed, walls) for placed, walls in against if walls}
+    hung = {placed.id: Boxes.of((placed,)).wider(HUNG_FREE) for placed in home.objects if placed.category in HUNG}
     props = []
     for mesh in home_meshes(home):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
@@ -192,8 +202,10 @@ def home_props(home: Home) -> list[Prop]:
         casts = not mesh.name.startswith(SHADOWLESS)
         solid = Solid(mesh.vertices, mesh.faces, mesh.color, opacity=opacity, casts=casts)
         room = side.room if side else home.room_at(middle)
-        piece = borne.get(mesh.name.partition(":")[0])
-        props.append(Prop(mesh.name, solid, low, high, room, side, stumps.get(mesh.name), piece))
+        name = mesh.name.removeprefix(HANGS).partition(":")[0]
+        props.append(
+            Prop(mesh.name, solid, low, high, room, side, stumps.get(mesh.name), borne.get(name), hung.get(name))
+        )
     return props
 
 

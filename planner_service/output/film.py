@@ -17,11 +17,13 @@ import numpy as np
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.formats.mp4 import write_mp4
-from motion_backend.rendering.film_edit import FilmEdit
+from motion_backend.motion import Skill
+from motion_backend.rendering.film_edit import FilmEdit, last_deed
 from motion_backend.rendering.film_frames import film_frames
 from motion_backend.rendering.film_picture import lay_words
 from motion_backend.rendering.film_shots import FilmShot, film_shots
 from motion_backend.rendering.title_place import Place, title_place
+from planner_service.grounding.keyframes_to_actions import stays
 from planner_service.output.film_deeds import deeds
 from planner_service.output.film_letters import lettered, titled
 from planner_service.output.film_pages import Subtitle, subtitles
@@ -90,7 +92,19 @@ class Filmed:
     def edit(self) -> FilmEdit:
         """What the film shows of the motion."""
         title = [(0, round(TITLE_SECONDS[1] * self.motion.fps))] if self.told.title.strip() else []
-        return FilmEdit.of(self.motion, [*title, *((line.start, line.stop) for line in self.words)])
+        told = [*title, *((line.start, line.stop) for line in self.words)]
+        return FilmEdit.of(self.motion, told, self._ends)
+
+    @cached_property
+    def _ends(self) -> int:
+        """The frame at which it leaves the motion: on its last deed, as soon as its words were read; at its end where
+        that is to sleep or to wait."""
+        last = len(self.segments) - 1
+        skill, caption = self.role.captions.get(last, (None, ""))
+        if last < 0 or last in self.role.asleep or (skill is Skill.LOCO and stays(caption)):
+            return len(self.motion)
+        read = max((line.read(self.motion.fps) for line in self.words), default=0)
+        return max(read, last_deed(self.motion, self.segments[last][0]))
 
     def edited_to_dict(self) -> dict[str, Any]:
         """How long the film is, and from where to where it leaves the motion out (seconds of the motion)."""

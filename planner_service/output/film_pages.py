@@ -51,6 +51,10 @@ class Subtitle:
     slanted: tuple[tuple[int, int], ...] = ()
     """First and stop letter of what is told and not seen."""
 
+    def read(self, fps: int) -> int:
+        """The frame at which they were read."""
+        return self.start + round(_read(self) * fps)
+
     @property
     def lines(self) -> list[list[Letter]]:
         """Letter by letter, and whether each is slanted."""
@@ -271,6 +275,6 @@ def _wrapped(text: str) -> list[str]:
     return textwrap.wrap(" ".join(text.split()), MAX_LETTERS, break_on_hyphens=False)
 
 
-def _read(page: _Page) -> float:
+def _read(page: _Page | Subtitle) -> float:
     """Seconds in which words are read at ease, once more where one looked away."""
     return min(max(READ[0], READ[1] + len(page.text) / LETTERS), READ[2])

@@ -9,6 +9,7 @@ from for_each import for_each
 from motion_backend import rotations
 from motion_backend.motion import Motion, Skill
 from motion_backend.rendering.camera import STRIDE, Shot, choose_camera, choose_frames, visible_share
+from motion_backend.rendering.motion_figures import around, home_props
 from motion_backend.rendering.rasterizer import orbit
 from motion_backend.skeleton import INDEX, build_skeleton
 from scene_graphs.home import home_from_layouts
@@ -113,3 +114,15 @@ def test_a_standing_body_is_seen_from_its_front_side():
 def test_an_orbit_keeps_its_distance():
     camera = orbit((1.0, 2.0, 3.0), 4.0, 0.7, 0.4)
     assert np.linalg.norm(np.subtract(camera.eye, camera.target)) == pytest.approx(4.0)
+
+
+def test_a_lamp_that_hangs_before_a_body_is_left_away_and_one_behind_it_is_not():
+    lamp = Placed("lamp", "pendant_lamp", (2.0, 1.4, 1.0), (0.5, 1.2, 0.5))
+    home = home_from_layouts([Layout("room", "bedroom", ((0, 0), (0, 4), (4, 4), (4, 0)), objects=(lamp,))], 0)
+    x, _, z = home.objects[0].position
+    props, body = home_props(home), np.array([[x, 1.5, z + 1.0]])
+    hung = {prop.name for prop in props if prop.hung is not None}
+    assert len(hung) >= 2, "shade and cord go together"
+    for yaw, there in ((0.0, True), (np.pi, False)):
+        shown = around(props, orbit((x, 1.5, z + 1.0), 3.0, yaw, 0.0), body)
+        assert all(any(prop.solid is solid for solid in shown) is there for prop in props if prop.name in hung)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from motion_backend.motion import FPS, Motion, Phase, PhaseKind
-from motion_backend.rendering.film_edit import ARRIVES, SETS_OFF, WORTH, FilmEdit
+from motion_backend.rendering.film_edit import ARRIVES, ENDS, SETS_OFF, WORTH, FilmEdit, last_deed
 from motion_backend.skeleton import build_skeleton
 
 LONG = 30 * FPS
@@ -80,3 +80,16 @@ def test_a_frame_of_the_motion_has_its_place_in_the_film() -> None:
     assert (len(edit), edit.left_out) == (20, ((10, 20),))
     assert FilmEdit.whole(7).kept == ((0, 7),)
     assert FilmEdit.of(moved(), []).left_out == (), "nobody walks"
+
+
+def test_a_film_leaves_soon_after_the_last_deed_and_never_before_its_end_is_asked_for() -> None:
+    skeleton = build_skeleton(1.7)
+    turns, roots = np.zeros((LONG, len(skeleton.names), 4), np.float32), np.zeros((LONG, 3), np.float32)
+    turns[..., 3] = 1.0
+    roots[:, 1] = np.interp(np.arange(LONG), [300, 330], [0.9, 0.5])
+    motion = Motion(roots, turns, np.ones((LONG, 4), np.float32), skeleton, np.zeros(LONG, np.int32))
+    assert last_deed(motion, 0) == 330 + ENDS * FPS
+    assert last_deed(motion, 400) == 400 + ENDS * FPS, "nothing is done in these frames"
+    assert last_deed(motion, LONG - 10) == LONG
+    edit = FilmEdit.of(motion, [], 375)
+    assert (edit.kept, edit.left_out) == (((0, 375),), ((375, LONG),))
