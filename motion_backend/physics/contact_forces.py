@@ -14,7 +14,7 @@ from motion_backend.physics.mjcf_character import SIDES, SOLE_POINTS, TOES
 from motion_backend.rotations import Array
 
 TOUCHED: Final = tuple(capsule.name for capsule in BODIES)
-"""The 15 contact bodies (SIMS 3.3); toes count as their foot, knees as their shin."""
+"""The 15 contact bodies (SIMS 3.3); toes count as their foot, knees as their shin, what is sat on as the pelvis."""
 STANDS: Final = 20.0
 """Newtons at heel or ball from which it counts as planted."""
 
@@ -69,7 +69,7 @@ class ContactReader:
     def of(model: Any, scale: float) -> ContactReader:
         """From a mujoco.MjModel with a body of that size against 1.70 m."""
         names = [model.geom(index).name for index in range(model.ngeom)]
-        own = tuple(_index(name.replace("_toe", "_foot").replace("_knee", "_shin")) for name in names)
+        own = tuple(_index(name) for name in names)
         feet = tuple((int(model.body(f"{side}_foot").id), int(model.body(f"{side}_toe").id)) for side, _ in SIDES)
         return ContactReader(own, names.index("floor"), feet, scale)
 
@@ -111,7 +111,9 @@ class ContactReader:
 
 
 def _index(name: str) -> int:
-    return TOUCHED.index(name) if name in TOUCHED else -1
+    side, _, part = name.partition("_")
+    touched = {"toe": f"{side}_foot", "knee": f"{side}_shin", "seat": "pelvis"}.get(part, name)
+    return TOUCHED.index(touched) if touched in TOUCHED else -1
 
 
 def root_force(data: Any) -> float:

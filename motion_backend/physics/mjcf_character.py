@@ -66,6 +66,10 @@ KNEECAP, HEEL_OF_HAND = (0.06, 0.03), (HAND_REST, 0.025)
 and how it gives (seconds), less than flesh does. They are as high as plans have knees and wrists over what they bear
 on. Without them a planned knee was 2.5 cm in the air, so that who knelt stood on the toes, and hands, straight where
 plans bend wrists, were 5 to 9 cm in the floor."""
+SITS_ON: Final = ((0.06, -0.055, 0.0), 0.06)
+"""Centre of the left one of two balls that a body sits on, in the pelvis' frame, and their radius (metres at 1.70 m).
+They are 2.5 cm lower than plans have the pelvis over a seat, as much as a seat gives. With the pelvis' own capsule,
+which a plan has 1 cm over the seat, who sat was 4 cm too low, and feet whose thighs lie on an edge were raised."""
 TOE_SHARE: Final = 0.0025
 """Of the mass; the foot's own segment has toes and all."""
 SOLE_POINTS: Final = np.array([[x, -ANKLE_HEIGHT, z] for z in (-0.033, 0.115) for x in (-0.025, 0.025)])
@@ -149,7 +153,8 @@ class _Body:
             "torso", self.offset("spine1", "spine2"), self.joint("trunk", "trunk"), self.skin("torso"), head + arms
         )
         place = numbers(0.0, self.skeleton.standing_height, 0.0)
-        return self.body("pelvis", place, '<freejoint name="root"/>', self.skin("pelvis"), torso + legs)
+        skin = self.skin("pelvis") + "".join(self.seat(side, way) for side, way in SIDES)
+        return self.body("pelvis", place, '<freejoint name="root"/>', skin, torso + legs)
 
     def arm(self, side: str) -> str:
         radius, gives = HEEL_OF_HAND
@@ -210,9 +215,15 @@ class _Body:
         form = f'type="capsule" fromto="{numbers(start, end)}" size="{size}"'
         return f'<geom name="{name}" class="body" {form} {FLESH} solref="{GIVES} 1"/>'
 
-    def ball(self, name: str, radius: float, gives: float) -> str:
-        """About a joint, what a body bears on there."""
-        return f'<geom name="{name}" class="body" type="sphere" size="{radius:.6g}" {FLESH} solref="{gives} 1"/>'
+    def seat(self, side: str, way: float) -> str:
+        """What the left (1) or right (-1) half sits on."""
+        centre, radius = SITS_ON
+        return self.ball(f"{side}_seat", radius * self.scale, GIVES, np.array(centre) * [way, 1.0, 1.0] * self.scale)
+
+    def ball(self, name: str, radius: float, gives: float, at: Array | None = None) -> str:
+        """About a joint, or beside it, what a body bears on there."""
+        form = f'type="sphere" pos="{numbers(np.zeros(3) if at is None else at)}" size="{radius:.6g}"'
+        return f'<geom name="{name}" class="body" {form} {FLESH} solref="{gives} 1"/>'
 
     def sole(self, side: str) -> str:
         centre, half = (numbers(np.array(one) * self.scale) for one in SOLE)

@@ -166,6 +166,7 @@ def lie_down_from_knees(knelt: Pose, mat: Mat, style: Lying, keys: LieKeys) -> P
     side = _on_the_side(knelt, mat, keys.pose)
     end = lying(knelt, mat.bed, style, mat.skeleton, keys.pose)
     hip = _on_the_hip(fourth, hands, side, mat)
+    side = _over_its_arm(side, hip)
     poses, waits = [side], [second.wait_s, third.wait_s, fourth.wait_s, settle.side_wait_s]
     if style.side != "left":
         poses.append(replace(_on_the_back(knelt, mat, keys.pose), palms=end.palms))
@@ -190,6 +191,7 @@ def rise_to_knees(start: Pose, mat: Mat, bearing: Bearing, keys: LieKeys) -> Pos
     back = _sat_back(third, hands, mat)
     side = replace(_on_the_side(start, mat, keys.pose), palms=start.palms)
     hip = _on_the_hip(first, hands, side, mat)
+    side = _over_its_arm(side, hip)
     lifted = freed(start, mat.bed)
     before = [replace(pose, reach=hip.reach) for pose in (start, *lifted, side)]
     poses = [*before, hip, hands, back, replace(knelt, reach=hands.reach, palms=hands.palms)]
@@ -314,6 +316,15 @@ def _on_the_hip(row: OnHip, hands: Pose, side: Pose, mat: Mat) -> Pose:
         elbows=np.array([row.left_elbow_direction, row.right_elbow_direction]),
         planted=np.array([1.0, 0.0]),
     )
+
+
+def _over_its_arm(side: Pose, hip: Pose) -> Pose:
+    """Lying on the side with the hand below where it bears on the hip, its elbow before the chest: an arm that lay
+    anywhere else would have to be drawn out from under the trunk."""
+    below = np.array([1.0, 0.0])
+    elbows, palms = side.elbows.copy(), side.palms.copy()
+    elbows[0], palms[0] = hip.elbows[0], hip.palms[0]
+    return replace(side, reach=hip.reach, reaching=below, pressing=below, elbows=elbows, palms=palms)
 
 
 def _on_palms(pose: Pose, row: OnHip, mat: Mat) -> Pose:

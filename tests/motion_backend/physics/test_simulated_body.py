@@ -168,7 +168,7 @@ def test_knees_and_hands_that_a_plan_bears_on_touch_the_floor_and_are_not_in_it(
 @pytest.mark.parametrize(
     ("rests", "caption", "under"), [(sat, "sitting still", "chair"), (lain, "lying still", "bed")], ids=["sits", "lies"]
 )
-def test_what_rests_presses_with_its_weight_on_what_is_under_it(
+def test_what_rests_stays_where_it_is_planned_and_presses_with_its_weight_on_what_is_under_it(
     rests: Callable[[str, str], Body], caption: str, under: str
 ) -> None:
     resting = rests(under, caption)
@@ -180,7 +180,9 @@ def test_what_rests_presses_with_its_weight_on_what_is_under_it(
     models, reference = models_of(1.70, boxes), Reference.of(plan, skeleton)
     reader = ContactReader.of(models.fine, skeleton.scale)
     controller = Controller(models, engine().MjData(models.fine), reference, reader)
-    _, pressures = controller.play(moment_of(reference, 0), 0, np.zeros((frames, NU)))
+    moments, pressures = controller.play(moment_of(reference, 0), 0, np.zeros((frames, NU)))
+    sunk = reference.qpos[0, 1] - moments[-1].state.qpos[1]
+    assert abs(sunk) < 0.025, "the pelvis is lower or higher than planned"
     things, floor = (sum(getattr(one, name) for one in pressures[-15:]) / 15 for name in ("things", "floor"))
     weight = mass_of(1.70) * GRAVITY
     assert (things + floor).sum() == pytest.approx(weight, rel=0.05)

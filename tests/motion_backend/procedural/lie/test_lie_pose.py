@@ -267,6 +267,24 @@ def test_hands_that_carry_stay_and_are_lifted_when_the_body_is_over_its_heels() 
     assert (centre - knee) @ back / np.linalg.norm(back) > -0.02
 
 
+@pytest.mark.parametrize("which", [0, 1])
+def test_no_arm_is_drawn_out_from_under_the_trunk_that_rolls_on_the_floor(which: int) -> None:
+    motion = (on_the_floor("lying still")[1], up_again("lying still", "get up slowly"))[which]
+    joints = motion.joint_positions()[during(motion, (PhaseKind.LIEDOWN, PhaseKind.GETUP)[which])].astype(np.float64)
+    pelvis, shoulder, elbow, wrist = (
+        joints[:, INDEX[name]] for name in ("pelvis", "left_shoulder", "left_elbow", "left_wrist")
+    )
+    # The shoulder below carries, and the trunk is over the side.
+    turned = joints[:, INDEX["right_shoulder"], 1] - shoulder[:, 1] > 0.2
+    rolls = turned & (shoulder[:, 1] < 0.15)
+    assert rolls.sum() > 10
+    for joint in (elbow, wrist):
+        assert np.linalg.norm(np.diff(joint[rolls], axis=0), axis=1).sum() < 0.2, "it is drawn along"
+    trunk, arm = ((joint - pelvis)[rolls][:, [0, 2]] for joint in (shoulder, elbow))
+    before = np.abs(trunk[:, 0] * arm[:, 1] - trunk[:, 1] * arm[:, 0]) / np.linalg.norm(trunk, axis=1)
+    assert before.min() > 0.2, "the elbow is under the trunk"
+
+
 def test_feet_do_not_slide_on_the_way_down_and_up() -> None:
     # What is walked before is held against walkers, who swing their toes low (test_how_people_walk), its last step too.
     down, up = on_the_floor("lying still")[1], up_again("lying still", "get up slowly")
