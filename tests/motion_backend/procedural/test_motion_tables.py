@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass, replace
 from importlib.resources import files
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from motion_backend.procedural.lie.lie_keys import lie_keys
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.sit.sit_keys import sit_keys
 from motion_backend.procedural.style_sheet import read_style_sheet
-from motion_backend.procedural.touch.gestures import gesture_table
+from motion_backend.procedural.touch.gestures import Move, MoveKey, gesture_table
 from motion_backend.procedural.touch.hand_actions import STAGES
 from motion_backend.procedural.touch.hand_captions import Handled, Laid
 from motion_backend.procedural.touch.hand_contacts import palm_on
@@ -197,13 +198,29 @@ def test_feet_end_their_step_as_they_began_it() -> None:
 def test_every_gesture_moves_something_and_its_keys_come_one_after_the_other() -> None:
     for name, move in gesture_table().moves.items():
         assert all(row.left_arms or row.up_arms or row.ahead_arms for row in move.hands), name
-        assert all(row.forward_rad or row.turn_rad or row.side_rad for row in move.trunk), name
+        assert all(row.forward_rad or row.turn_rad or row.side_rad or row.up_m for row in move.trunk), name
         assert move.hands or move.trunk or move.keys, name
         times = [0.0, *(key.at_share for key in move.keys), 1.0]
         assert (np.diff(times) > 0).all(), name
         assert {arm for key in move.keys for arm in key.arms} <= {"", *arm_poses()}, name
         bursts = [*(row.burst for row in move.hands), *(row.burst for row in move.trunk)]
         assert all(2 * one.rises_s <= one.lasts_s < one.every_s for one in bursts if one is not None), name
+
+
+def test_a_foot_of_a_gesture_goes_nowhere_but_through_the_air() -> None:
+    for name, move in gesture_table().moves.items():
+        keys = [MoveKey(at_share=0.0), *move.keys, MoveKey(at_share=1.0, feet_turn_rad=_about(move))]
+        for before, after in pairwise(keys):
+            for index, foot in enumerate(("left_foot_m", "right_foot_m")):
+                here, there = np.array(getattr(before, foot)), np.array(getattr(after, foot))
+                if here[1] == there[1] == 0.0 and before.flight_m == after.flight_m == 0.0:
+                    assert (here == there).all(), (name, foot, after.at_share)
+                    assert before.feet_turn_rad[index] == after.feet_turn_rad[index], (name, foot, after.at_share)
+
+
+def _about(move: Move) -> tuple[float, float]:
+    """How far feet have turned by the end: back to where they were, or once about."""
+    return move.keys[-1].feet_turn_rad if move.keys else (0.0, 0.0)
 
 
 def touched(doing: str, keys: TouchKeys, prone: bool = False) -> Pose:
