@@ -55,7 +55,9 @@ def without_asides(words: list[Token], main: int) -> tuple[list[Token], list[lis
             is_told = verb_place(after[:3]) == 0 or tells(after)
         else:
             is_told = low in grammar().subjects | ARTICLES | OWNERS and tells(words[place:])
-        if is_told and ends_noun(words[place - 2].low, words[place - 1].low):
+        # "reads one | that makes him laugh"
+        one = low in RELATIVES and words[place - 1].low == "one" and verb_of(after[0].low) in ("make", "let")
+        if is_told and (one or ends_noun(words[place - 2].low, words[place - 1].low)):
             cut = place - 2 * (words[place - 1].low in MANNER and words[place - 2].low in grammar().marks)
             return words[:cut], [words[place:]]
     return words, []
