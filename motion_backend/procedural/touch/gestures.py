@@ -213,7 +213,7 @@ class Move:
         found = once * (np.arange(turns)[:, None] + shares)
         if self.lingers_at_share is not None:
             found[-1, shares > self.lingers_at_share] += seconds - turns * once
-        return found
+        return np.asarray(found)
 
 
 @table
