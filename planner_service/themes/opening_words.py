@@ -41,8 +41,8 @@ _TO_THE_DOOR: Final = re.compile(
 )
 _GOES_OUT: Final = re.compile(
     rf"\b(?:out|through) (?:of |by )?{_OF_A_HOUSE}(?:door|doorway)(?!\w| of)"
-    r"|(?:^|; )(?:\w+ly )?(?:leav(?:e|es|ing)|left)(?=$|[,.;]| (?:again|alone|early|\w+ly|without|for|(?:the|his|her|their)"
-    r" (?:house|home|flat|apartment))\b)"
+    r"|(?:^|; )(?:\w+ly )?(?:leav(?:e|es|ing)|left)(?=$|[,.;]| (?:again|alone|early|\w+ly|without|for"
+    r"|(?:the|his|her|their) (?:house|home|flat|apartment))\b)"
     r"|\b(?:go|went|run|ran|walk|storm|rush|hurr|dash|slip|sneak|stomp|head)\w* out(?=$|[,.;]| (?:again|quickly|without"
     r"|into the (?:rain|night|street|cold|snow|garden)|of the (?:house|flat|apartment|home))\b)",
     re.IGNORECASE,
