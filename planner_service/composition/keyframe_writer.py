@@ -54,7 +54,6 @@ from planner_service.scripts.script import Keyframe, PlannedKeyframe, ShortScrip
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import EXPRESSIONS, ReadBeat
 from planner_service.themes.lexicon import lemma_of
-from planner_service.themes.no_deeds import tells_occasion
 from planner_service.themes.opening_words import Kind, opening_of
 from planner_service.themes.protagonist import head_of, names_somebody
 from planner_service.themes.sentence_parser import Clause
@@ -212,9 +211,8 @@ class KeyframeWriter:
         self.body.plain = False
 
     def appear(self, beats: Sequence[ReadBeat]) -> None:
-        """Somebody of whom nothing else can be acted, or whom an occasion implies, is seen at what a verbless beat
-        names, else in their mood."""
-        if not any(names_somebody(one.clause) or tells_occasion(one.clause) for one in beats):
+        """Somebody of whom nothing else can be acted is seen at what a verbless beat names, else in their mood."""
+        if not any(names_somebody(one.clause) for one in beats):
             return
         for index, one in enumerate(beats):
             for piece in () if one.clause.verb else where(one.clause.text):

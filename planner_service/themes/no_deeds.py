@@ -26,10 +26,6 @@ _ON_SOMEBODY: Final = re.compile(r"\b(?:on|in|around|under) (?:his|her|my) \w+",
 """Where things are that are no people: "they were on his head"."""
 _PLACED: Final = re.compile(r" (?:on|in|by|under|beside|behind|near|at) (?=(?:the|an?|his|her|their|my|every|each)\b)")
 """Before where things are."""
-_SPENT: Final = frozenset(
-    ("dinner", "lunch", "supper", "breakfast", "holiday", "birthday", "christmas", "after", "before")
-)
-"""Words of times that somebody spends somehow."""
 _OF_AGE: Final = frozenset(
     ("year", "old", "now", "almost", "nearly", "already", "just", "only", "month", "today", "be")
 )
@@ -45,15 +41,6 @@ def tells_no_deed(clause: Clause) -> bool:
         return of_things or _is_who(clause) or _is_age(clause) or _ALONE.match(clause.text) is not None
     rest = clause.lemmas[1:2]
     return clause.verb == "have" and (not _NONE.isdisjoint(rest) or not grammar().numbers.isdisjoint(rest))
-
-
-def tells_occasion(clause: Clause) -> bool:
-    """Whether words tell of a time that somebody spends, and of no deed in it: "A rainy Sunday", "Nobody came"."""
-    if clause.doer.lower() in ("nobody", "no one"):
-        return clause.verb in theme_words()["missed_verbs"]
-    lows = [token.low for token in tokens_of(clause.text)] if not clause.doer else []
-    words = {*lows, *map(lemma_of, lows)}
-    return not words.isdisjoint(_SPENT | theme_words()["told_times"])
 
 
 def _is_when_or_none(clause: Clause) -> bool:
