@@ -89,6 +89,8 @@ _MADE_UP: Final = re.compile(
     re.IGNORECASE,
 )
 """What people do who were angry with each other."""
+_LIST: Final = 5
+"""Things, and nothing else, from which on a sentence only lists them."""
 _CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
 
 
@@ -302,6 +304,9 @@ def _refuse_foreign(text: str) -> None:
         language = foreign_language(text)
         what = f"looks like {language}" if language != ANOTHER else "is no everyday English"
         raise ThemeError(f"{text[:60]!r} {what}. {LANGUAGE}")
+    known = [lemma_of(word) in things() or is_known(word) or is_known(lemma_of(word)) for word in words]
+    if len(words) >= _LIST and all(known) and "." not in text.strip().rstrip("."):
+        raise ThemeError(f"{text[:60]!r} is a list of things. {LANGUAGE}")
     if len(_CODE.findall(text)) > max(3, len(words) / 3):
         raise ThemeError(f"{text[:60]!r} is no prose. {LANGUAGE}")
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import is_third_person
+from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
-
-if TYPE_CHECKING:
-    from planner_service.themes.sentence_parser import Clause
 
 RECALLING: Final = frozenset(("when", "how", "that", "where"))
 """Joints after which it is told what somebody remembers."""
@@ -27,40 +25,10 @@ _TIME: Final = re.compile(
     r"\b(?:day|time|night|evening|morning|summer|winter|spring|autumn|year)s?(?: (?:that|when))?$", re.IGNORECASE
 )
 """What may be remembered with all that happened then: "the day | that he left"."""
-_LONG_AGO: Final = re.compile(
-    r"\b(?:(?:years?|months?|weeks?|days?|decades|ages|long|a lifetime) ago|back then|in those days)\b"
-    r"|^(?:last (?:spring|summer|autumn|fall|winter|year|month|week|christmas|easter|\w+day)"
-    r"|in (?:(?:his|her|their|my) (?:youth|childhood|twenties|thirties)|it|the (?:photo|photograph|picture)))\b",
-    re.IGNORECASE,
-)
-"""When, or where, what is told was done that is not done now."""
-_NOW: Final = re.compile(r"\b(?:now|nowadays|today|tonight|back in the present|present day)\b", re.IGNORECASE)
-"""What is told after it is of the present,"""
-_IN_PRESENT: Final = re.compile(r"\b(?:he|she|it|[A-Z][a-z]+)(?: \w+ly)? (\w+s)\b")
-"""as are words of what somebody does."""
-_FLASHBACK: Final = re.compile(r"flashback\b", re.IGNORECASE)
 _SEES: Final = re.compile(r"\b(?:sees?|saw|pictur\w+|imagin\w+) (?:him|her|my|them)sel(?:f|ves)\b", re.IGNORECASE)
 """Who sees themselves thinks of another time, or of what might be."""
 _THINKING: Final = frozenset(("think", "miss", "dream", "mourn", "muse"))
 """Verbs of what is thought of: "thinks of the day | that they met"."""
-
-
-def long_ago(sentences: Sequence[str]) -> frozenset[int]:
-    """The places of sentences that tell of another time than the others: "Last summer they danced here. She sits down",
-    or of a flashback, till a word says that it is over."""
-    found: set[int] = set()
-    flashes = False
-    for at, sentence in enumerate(sentences):
-        flashes = not _NOW.search(sentence) and (flashes or _FLASHBACK.match(sentence) is not None)
-        others = [*sentences[:at], *sentences[at + 1 :]]
-        now = any(map(_NOW.search, sentences[at + 1 :])) or any(map(_is_present, others))
-        if flashes or (_LONG_AGO.search(sentence) and now and not _is_present(sentence)):
-            found.add(at)
-    return frozenset(found)
-
-
-def _is_present(sentence: str) -> bool:
-    return any(is_third_person(word) for word in _IN_PRESENT.findall(sentence))
 
 
 def recalled_in(clauses: Sequence[Clause]) -> frozenset[int]:

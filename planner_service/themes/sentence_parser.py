@@ -25,9 +25,8 @@ from planner_service.themes.asides import (
 from planner_service.themes.clause import Clause
 from planner_service.themes.constructions import meant
 from planner_service.themes.lexicon import grammar, is_adjective, is_noun, kinds_of, lemma_of, participle, verb_of
-from planner_service.themes.memories import long_ago
 from planner_service.themes.prose import prose_of
-from planner_service.themes.sentence_order import in_story_time
+from planner_service.themes.sentence_order import in_story_time, long_ago
 from planner_service.themes.sentence_pieces import Piece, in_time, is_led, pieces_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import FLOATING, NAMING, Token, has_verb, names, verb_place

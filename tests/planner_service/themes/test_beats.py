@@ -356,3 +356,10 @@ def test_what_there_is_nothing_but_is_there() -> None:
 )  # fmt: skip
 def test_what_was_done_long_ago_is_remembered_where_the_rest_is_told_as_of_now(theme: str, kinds: list[str]) -> None:
     assert [one.beat.kind for one in beats_of(theme)] == kinds
+
+
+def test_a_list_of_things_is_refused_and_a_day_is_not() -> None:
+    with pytest.raises(ThemeError, match="a list of things"):
+        beats_of("Apples, pears, plums, tables, chairs.")
+    for theme in ("Coffee, book, bed.", "A rainy Sunday.", "An evening alone with a good book."):
+        assert beats_of(theme)
