@@ -83,6 +83,8 @@ ALONG: Final = 0.8
 """What it counts to look along an arm, of which then nothing is seen."""
 STEEP, LIES = (1.0, 0.3), 0.5
 """What a radian from above counts from near, of who is upright and of who lies: whose head's up is less than that."""
+FROM_FEET, OBLIQUE = 4.0, 0.3
+"""What it counts to look at who lies along their legs, soles first, and the cosine from which on that begins."""
 FROM_INSIDE: Final = 1.0
 """What it counts to be in the room, from near."""
 AT_DOOR: Final = 3.0
@@ -233,13 +235,14 @@ class _Director:
         before_it = front is not None or there is not None
         widest = BEYOND if before_it else PROFILE if framing.deed and not framing.gesture else QUARTER
         yaws = _yaws(front if front is not None or there is None else there.front)
+        lying = rotations.rotate(self.turns[frames, 0], np.array([0.0, 1.0, 0.0]))
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])), yaws)
         scored = []
         for pitch in PITCHES:
             for index, yaw in enumerate(yaws.tolist()):
                 camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
                 score = float(liked[index]) + sight.score(camera, poses)
-                score -= FAR * _distance(camera)
+                score -= FAR * _distance(camera) + FROM_FEET * _from_feet(lying, -camera.axes[2])
                 if len(watched):
                     score += WATCHED * _is_faced(ahead, -camera.axes[2], widest)
                 if front is not None:
@@ -440,6 +443,13 @@ def _is_faced(ahead: Array, towards: Array, turns: tuple[float, float]) -> float
     """How well a face is turned to a camera: 1 up to the first of two turns, 0 at the second, and less from behind."""
     least, most = turns
     return float(np.clip((most - _turns(ahead, towards)) / (most - least), -1.0, 1.0).mean())
+
+
+def _from_feet(up: Array, towards: Array) -> float:
+    """How much who lies is seen from beyond their feet, where trunks point `up` (P, 3) in some frames: 0 from the side
+    and of who does not lie, 1 straight along the legs."""
+    beyond = np.clip(-(up @ towards) - OBLIQUE, 0.0, None) / (1.0 - OBLIQUE)
+    return float((beyond * (np.abs(up[:, 1]) < LIES)).mean())
 
 
 def _turns(ahead: Array, towards: Array) -> Array:

@@ -26,7 +26,7 @@ from motion_backend.rendering.film_frames import compile_film, film_frames
 from motion_backend.rendering.film_loop import moment, write_loop
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
 from motion_backend.rendering.film_set import FilmSet
-from motion_backend.rendering.film_shots import FilmShot, _fitted, _View, film_shots
+from motion_backend.rendering.film_shots import FilmShot, _fitted, _from_feet, _View, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
 from motion_backend.rendering.rasterizer import Camera, orbit
@@ -279,3 +279,11 @@ def test_a_camera_turned_aside_stands_where_it_stood_and_keeps_all_in_its_pictur
     sides = [float(view.camera.axes[2] @ middle.axes[0]) for view in _View(0.0, middle, points).aside(16 / 9)]
     assert len(sides) == 2 or wide > 0.5, "a narrow body has room at either side"
     assert len(sides) < 2 or sides[0] * sides[1] < 0
+
+
+def test_soles_first_is_how_nobody_who_lies_is_looked_at() -> None:
+    lies, stands = np.array([[0.0, 0.1, 1.0]]), np.array([[0.0, 1.0, 0.0]])
+    ways = {"feet": (0.0, 0.0, -1.0), "side": (1.0, 0.0, 0.0), "head": (0.0, 0.0, 1.0)}
+    assert _from_feet(lies, np.array(ways["feet"])) > 0.9
+    assert [_from_feet(lies, np.array(ways[way])) for way in ("side", "head")] == [0.0, 0.0]
+    assert _from_feet(stands, np.array((0.0, -1.0, 0.0))) == 0.0
