@@ -349,8 +349,14 @@ def _led_on(motion: Motion, later: Motion) -> Motion:
     """A motion whose last phase lasts as long as the frames that are put after it."""
     *before, last = motion.phases
     whole = join([motion, replace(later, actions=np.full(len(later), motion.actions[-1], dtype=np.int32))])
-    told = {"completed": motion.completed, "reason": motion.reason, "goals": motion.goals, "notes": motion.notes}
-    return replace(whole, phases=(*before, replace(last, stop=len(whole))), **told)
+    return replace(
+        motion,
+        root_positions=whole.root_positions,
+        local_rotations=whole.local_rotations,
+        contacts=whole.contacts,
+        actions=whole.actions,
+        phases=(*before, replace(last, stop=len(whole))),
+    )
 
 
 def _told(motion: Motion) -> str:
