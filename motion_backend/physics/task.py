@@ -125,8 +125,9 @@ def doing(motion: Motion) -> NDArray[np.int8]:
 
 def _kneels(motion: Motion) -> NDArray[np.bool_]:
     """In which frames a body kneels, goes down for it or comes up. (T,)."""
-    low = _lowest_knee(motion) < KNEES * motion.skeleton.standing_height
-    return np.convolve(low, np.ones(2 * round(GOES_DOWN_IN * FPS) + 1), "same") > 0
+    low = np.flatnonzero(_lowest_knee(motion) < KNEES * motion.skeleton.standing_height)
+    frames = np.arange(len(motion))
+    return np.asarray((np.abs(frames[:, None] - low) <= GOES_DOWN_IN * FPS).any(axis=1))
 
 
 def _lowest_knee(motion: Motion) -> Array:

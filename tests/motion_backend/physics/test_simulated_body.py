@@ -173,6 +173,8 @@ def test_who_kneels_is_followed_as_who_goes_down_and_who_stands_or_sits_on_a_flo
     assert low.sum() > 10
     assert (does[low] == Doing.GOES_DOWN).all()
     assert does[np.flatnonzero(low)[0] - 5] == Doing.GOES_DOWN, "on the way down"
+    first = int(np.flatnonzero(low)[0])
+    assert (plan_of(kneels.part(first, first + 5)).doing == Doing.GOES_DOWN).all(), "a few frames"
     for motion in (sat("floor", "sitting still").motion, touched("shelf", "high", "touch high height").motion, walk()):
         assert Doing.GOES_DOWN not in plan_of(motion).doing
 
