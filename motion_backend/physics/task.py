@@ -37,6 +37,10 @@ DOING: Final = {
     PhaseKind.LIEDOWN: Doing.LIES, PhaseKind.GETUP: Doing.RISES, PhaseKind.STANDUP: Doing.STANDS_UP,
 }  # fmt: skip
 """What is followed otherwise; getting up from a bed and from a seat are not."""
+KNEELS_IN: Final = (PhaseKind.STAND, PhaseKind.TOUCH)
+"""Where who kneels is followed as who goes down to lie is: on one's knees, for something or to pray."""
+GOES_DOWN_IN: Final = 1.3
+"""Seconds before and after a knee bears in which the body goes down onto it and comes up."""
 
 
 @dataclass(frozen=True)
@@ -114,7 +118,21 @@ def doing(motion: Motion) -> NDArray[np.int8]:
         if does in (Doing.RISES, Doing.STANDS_UP) and not _low(motion.part(phase.start, phase.start + 1), does):
             does = Doing.OTHER
         found[phase.start : phase.stop] = does
+        if phase.kind in KNEELS_IN:
+            found[phase.start : phase.stop][_kneels(motion.part(phase.start, phase.stop))] = Doing.GOES_DOWN
     return found
+
+
+def _kneels(motion: Motion) -> NDArray[np.bool_]:
+    """In which frames a body kneels, goes down for it or comes up. (T,)."""
+    low = np.flatnonzero(_lowest_knee(motion) < KNEES * motion.skeleton.standing_height)
+    frames = np.arange(len(motion))
+    return np.asarray((np.abs(frames[:, None] - low) <= GOES_DOWN_IN * FPS).any(axis=1))
+
+
+def _lowest_knee(motion: Motion) -> Array:
+    knees: Array = motion.joint_positions()[:, [INDEX["left_knee"], INDEX["right_knee"]], 1].min(axis=1)
+    return knees
 
 
 def _low(beginning: Motion, does: Doing) -> bool:
@@ -122,8 +140,7 @@ def _low(beginning: Motion, does: Doing) -> bool:
     low = LOW * beginning.skeleton.standing_height
     if does is Doing.RISES:
         return bool(beginning.root_positions[0, 1] < low)
-    knees = beginning.joint_positions()[0, [INDEX["left_knee"], INDEX["right_knee"]], 1]
-    return bool(knees.min() < KNEES * beginning.skeleton.standing_height)
+    return bool(_lowest_knee(beginning)[0] < KNEES * beginning.skeleton.standing_height)
 
 
 def plan_of(motion: Motion) -> Plan:

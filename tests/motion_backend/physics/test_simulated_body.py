@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from acted import Body, lain, sat, touched
-from simulated import NOTHING, empty_room, walk
-from small_home import small_home
+from simulated import HOME, NOTHING, WALK, empty_room, walk
+from small_home import DIRECTOR, after, small_home
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.body.segment_masses import centres_of_mass
@@ -21,7 +21,7 @@ from motion_backend.physics.generalized_coordinates import fold, unfold
 from motion_backend.physics.mjcf_character import NQ, NU, NV, SIMULATED, mass_of
 from motion_backend.physics.mjcf_scene import SLOTS, models_of, near_way
 from motion_backend.physics.mpc import Controller, moment_of
-from motion_backend.physics.reference import Reference
+from motion_backend.physics.reference import Doing, Reference
 from motion_backend.physics.task import plan_of
 from motion_backend.procedural.lie.lie_on_floor import KNEE
 from motion_backend.scene import scene_of
@@ -163,6 +163,20 @@ def test_knees_and_hands_that_a_plan_bears_on_touch_the_floor_and_are_not_in_it(
                 own = model.geom(f"{side}_{ball}").id
                 # Hands are a little aside where arms reach without their collars.
                 assert data.geom_xpos[own, 1] - model.geom_size[own, 0] == pytest.approx(0.0, abs=0.01)
+
+
+def test_who_kneels_is_followed_as_who_goes_down_and_who_stands_or_sits_on_a_floor_is_not() -> None:
+    prays = replace(WALK, goal=None, caption="praying while kneeling, palms together", hold=3.0)
+    kneels = DIRECTOR.act(HOME, prays, after(HOME))[0]
+    low = kneels.joint_positions()[:, [INDEX["left_knee"], INDEX["right_knee"]], 1].min(axis=1) < 0.1
+    does = plan_of(kneels).doing
+    assert low.sum() > 10
+    assert (does[low] == Doing.GOES_DOWN).all()
+    assert does[np.flatnonzero(low)[0] - 5] == Doing.GOES_DOWN, "on the way down"
+    first = int(np.flatnonzero(low)[0])
+    assert (plan_of(kneels.part(first, first + 5)).doing == Doing.GOES_DOWN).all(), "a few frames"
+    for motion in (sat("floor", "sitting still").motion, touched("shelf", "high", "touch high height").motion, walk()):
+        assert Doing.GOES_DOWN not in plan_of(motion).doing
 
 
 @pytest.mark.parametrize(
