@@ -8,7 +8,6 @@ from typing import Final
 
 from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import is_third_person
-from planner_service.themes.sentence_parser import Clause
 from planner_service.themes.theme_words import theme_words
 
 RECALLING: Final = frozenset(("when", "how", "that", "where"))
