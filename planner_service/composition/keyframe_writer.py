@@ -20,7 +20,7 @@ from planner_service.composition.caption_senses import only_in, shows
 from planner_service.composition.deed_lexicon import Deed, row_of
 from planner_service.composition.deed_places import DeedPlaces
 from planner_service.composition.deed_reader import TOUCHES, DeedReader, rises_again
-from planner_service.composition.deed_table import DeedRow, deed_table
+from planner_service.composition.deed_table import DeedRow, captions_of_gestures, deed_table
 from planner_service.composition.earlier_deeds import done_before, with_its_noun
 from planner_service.composition.furniture_words import (
     listed_places,
@@ -565,7 +565,9 @@ class KeyframeWriter:
 
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
     """Those of some captions that a deed may be seen in: the only ones that show it, of the skill's where they have
-    none, and nobody gets down on the floor for what is not told to be low."""
+    none and are no gestures, and nobody gets down on the floor for what is not told to be low."""
+    if some and captions_of_gestures().issuperset((skill, one) for one in some):
+        return some
     only = [[one for one in those if any(part in one.lower() for part in only_in(clause) or ())]
             for those in (some, captions()[skill.value])]  # fmt: skip
     if any(only):
