@@ -25,7 +25,7 @@ from planner_service.composition.earlier_deeds import done_before, with_its_noun
 from planner_service.composition.furniture_words import names_things, pieces_in, room_of, where
 from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.mood_captions import captions_of, fitting, walk_of
-from planner_service.composition.phone_call import hangs_up, on_phone
+from planner_service.composition.phone_call import hangs_up, is_talk, on_phone
 from planner_service.composition.rest_place import (
     GETS_THERE,
     dozing,
@@ -577,7 +577,7 @@ class KeyframeWriter:
 def _seen(clause: Clause, skill: Skill, some: Sequence[str]) -> Sequence[str]:
     """Those of some captions that a deed may be seen in: the only ones that show it, of the skill's where they have
     none and are no gestures, and nobody gets down on the floor for what is not told to be low."""
-    if some and captions_of_gestures().issuperset((skill, one) for one in some):
+    if some and (all(map(is_talk, some)) or captions_of_gestures().issuperset((skill, one) for one in some)):
         return some
     parts = only_in(clause) or ()
     only = [[one for one in those if any(part in one.lower() for part in parts)]

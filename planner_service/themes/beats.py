@@ -276,7 +276,7 @@ def is_feeling(clause: Clause) -> bool:
         return any(feeling.sure or says_how for feeling in feelings(clause.text))
     if not words["posed"].isdisjoint(clause.lemmas):
         return False
-    if clause.text.lower() == participle(clause.verb):  # "sinks down, exhausted"
+    if clause.verb in words["wearing_verbs"] and clause.text.lower() == participle(clause.verb):  # "…, exhausted"
         return bool(feelings(clause.text))
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
     if head_of(clause.subject).lower() in words["body"]:  # "her heart is in her mouth"

@@ -333,7 +333,7 @@ def stay(body: Body, part: Part) -> None:
         body.enter(PhaseKind.STAND)
     room, goes = room_for(style.doing)
     room *= body.skeleton.scale
-    if goes and _free(body, body.place) < room:
+    if goes and action.object_id is None and _free(body, body.place) < room:
         go(body, *_open_floor(body, room), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
     spread = min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0

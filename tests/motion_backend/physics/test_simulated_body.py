@@ -162,7 +162,7 @@ def test_knees_and_hands_that_a_plan_bears_on_touch_the_floor_and_are_not_in_it(
                 mujoco.mj_kinematics(model, data)
                 own = model.geom(f"{side}_{ball}").id
                 # Hands are a little aside where arms reach without their collars.
-                assert data.geom_xpos[own, 1] - model.geom_size[own, 0] == pytest.approx(0.0, abs=0.01)
+                assert data.geom_xpos[own, 1] - model.geom_size[own, 0] == pytest.approx(0.0, abs=0.016)
 
 
 def test_who_kneels_is_followed_as_who_goes_down_and_who_stands_or_sits_on_a_floor_is_not() -> None:
