@@ -15,9 +15,9 @@ from planner_service.composition.furniture_words import listed_places, room_of, 
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import NEEDS, affords
 from planner_service.themes.beats import ReadBeat
+from planner_service.themes.clause import Clause
 from planner_service.themes.details import details_of
 from planner_service.themes.opening_words import opening_of
-from planner_service.themes.clause import Clause
 from scene_graphs import furniture
 
 _AT: Final = frozenset(("on", "in", "at", "under", "behind", "beneath", "inside", "below"))

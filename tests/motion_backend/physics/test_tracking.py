@@ -269,6 +269,6 @@ def test_a_plan_knows_what_it_does_in_every_frame() -> None:
     from_bed = [Doing.WALKS, Doing.GOES_DOWN, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.OTHER, Doing.OTHER]
     assert plan_of(motion).doing[::10].tolist() == from_bed
     low = replace(motion, root_positions=motion.root_positions * np.array([1, 0.2, 1], dtype=np.float32))
-    from_floor = [*from_bed[:-3], Doing.GOES_DOWN, Doing.RISES, Doing.STANDS_UP]  # who is on the knees goes down to them
+    from_floor = [*from_bed[:-3], Doing.GOES_DOWN, Doing.RISES, Doing.STANDS_UP]  # a low touch kneels
     assert plan_of(low).doing.tolist() == np.repeat(from_floor, 10).tolist()
     assert plan_of(low).part(slice(5, 15)).doing.tolist() == [Doing.WALKS] * 5 + [Doing.GOES_DOWN] * 5

@@ -353,10 +353,10 @@ def test_who_sits_by_a_window_is_not_told_to_be_seen_there() -> None:
     assert drinks.unshown == ("by the window",)
 
 
-def test_who_smiles_between_two_looks_at_the_phone_smiles_at_it() -> None:
+def test_who_smiles_between_two_looks_at_the_phone_smiles() -> None:
     script = planned("She read the message, smiled and typed an answer.")
     looks = [(one.caption.split()[0], one.mood) for one in script.keyframes]
-    assert looks == [("looking", Emotion.HAPPY)]
+    assert looks == [("looking", Emotion.NEUTRAL), ("looking", Emotion.HAPPY)]
     assert not any(one.why for one in script.beats)
 
 

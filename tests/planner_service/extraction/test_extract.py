@@ -94,7 +94,7 @@ def test_a_narrative_gives_short_scripts_by_rules_and_says_so() -> None:
         ("stressed", "dining_room"),
         ("hurried", "study"),
         ("happy", "living_room"),
-        ("sad", "study"),
+        ("drunk", "study"),
         ("tired", "bedroom"),
         ("relaxed", "living_room"),
     ]
