@@ -30,6 +30,8 @@ _INVERTED: Final = re.compile(
     r"(?i)(?<=\w)(?<! to)(,?) (did|does|do|had|has|have) (he|she|they|we|i|(?-i:[A-Z][a-z]+))\b(?= (\w+))"
 )
 """A verb before who does it, as after "only when", "never" and "not until"."""
+_FIRST: Final = re.compile(r"(?i)\s*after \w+ing\b")
+"""What is done before, as "only" has gone by then: "(only) after washing up | does she sit"."""
 _SLANG_NOT: Final = re.compile(r"(?i)\b(do|does|did|is|was|are|could|would|has|had|have|should)nt\b")
 
 
@@ -86,7 +88,8 @@ def _turned(found: re.Match[str]) -> str:
     if not fits:
         return found[0]
     before = found.string[: found.start()].rsplit(".", 1)[-1]
-    told = found[1] or ("," if verb_place(tokens_of(before)) is not None else "")
+    apart = _FIRST.match(before) or verb_place(tokens_of(before)) is not None
+    told = found[1] or ("," if apart else "")
     return f"{told} {found[3]} {found[2]}"
 
 

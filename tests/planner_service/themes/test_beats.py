@@ -106,6 +106,8 @@ def test_a_nap_is_a_deed_though_no_verb_says_so() -> None:
         ("They sit there, not reading.", ["deed", "undone"]),
         ("She lies on the bed not moving.", ["deed", "undone"]),
         ("He eats his soup not looking at her.", ["deed", "undone"]),
+        ("Only after washing the dishes does she drink tea.", ["deed", "deed"]),
+        ("The two of them dance.", ["deed"]),
         ("Only when it was dark did he rise, touch the wall and stand there.", ["other", "deed", "deed", "deed"]),
         ("Never did she sit down.", ["undone"]),
         ("He has not read a line.", ["undone"]),
