@@ -10,6 +10,7 @@ from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.clause import Clause
+from planner_service.themes.opening_words import opening_of, spelt_out
 from planner_service.themes.theme_words import theme_words
 from scene_graphs.furniture import canonical, categories_of, class_of, typical_size
 from scene_graphs.furniture_shapes import parts
@@ -36,7 +37,9 @@ def with_worked(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) 
         for beat in (keyframe.beat, *keyframe.also):
             if does or beat is None or beat in told or keyframe.skill is not Skill.TOUCH or keyframe.on_floor:
                 continue
-            does = done_to(read[beat].clause, keyframe.piece[0], last)
+            said = spelt_out(read[beat].text, [one.text for one in read[:beat]])
+            at_door = opening_of(Skill.TOUCH, said) is not None
+            does = done_to(read[beat].clause, keyframe.piece[0], last or ("open" if at_door else ""))
             told |= {beat} if does else set()
             drawer = does in ("open", "into") and "drawer" in read[beat].clause.lemmas
             if drawer and not _has_drawers(keyframe.piece[0]):
