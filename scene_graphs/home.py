@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from scene_graphs.doorways import WALL_GAP, HomeError, Pose, arrangements, span_on
 from scene_graphs.errors import FieldPath
@@ -136,6 +137,10 @@ class Home:
         reach = WALL_GAP / 2 + 0.01
         ways = [shapely.LineString(doorway.segment).buffer(reach, cap_style="flat") for doorway in self.doorways]
         return shapely.union_all([*self._outlines, *ways])
+
+    def on_floor(self, points: Array) -> NDArray[np.bool_]:
+        """Which of points [x, z] (N, 2) are in a room or a doorway between two. (N,)."""
+        return np.asarray(shapely.intersects_xy(self.floor, points[:, 0], points[:, 1]))
 
     @cached_property
     def thresholds(self) -> shapely.Geometry:

@@ -37,6 +37,8 @@ IN_THE_WAY: Final = 0.12
 """A door keeps this far from the middle of hips and head (metres)."""
 OVERHEAD: Final = 1.3
 """What reaches no higher opens under a head (metres)."""
+SETS_OFF: Final = 0.15
+"""Who has let go of a door goes on through it once they are this far from where they did (metres)."""
 PASSED: Final = 0.35
 """Who has passed a door is this far from all of its way (metres)."""
 STEPS: Final = 21
@@ -230,14 +232,21 @@ def _taken_along(front: Mechanism, hands: Hands, motion: Motion, deeds: Sequence
             shares[since:] = _fitted(along, len(motion) - since)
         if not deed.passes:
             continue
-        shut_next = following is not None and following.worked.does == "close"
         if deed.worked.does == "close":  # who comes in
-            handle = (following.worked.handle if shut_next and following is not None else None) or deed.worked.handle
-            shares[:] = (handle.share if handle is not None else 1.0) * _fitted(ramp, len(motion))
+            shares[:] = _fitted(ramp, len(motion))
+        elif deed.along is not None:  # who leaves pushes it wide on the way through
+            let_go = min(deed.along[0] + len(deed.along[1]), len(motion) - 1)
+            gone = np.linalg.norm(motion.root_positions[let_go:] - motion.root_positions[let_go], axis=1) > SETS_OFF
+            sets_off = let_go + int(np.argmax(gone)) if gone.any() else len(motion)
+            shares[sets_off:] += (1.0 - shares[sets_off:]) * _fitted(ramp, len(motion) - sets_off)
         passed = np.flatnonzero(away[deed.last :] < PASSED)
-        gone = deed.last + (int(passed[-1]) + 1 if len(passed) else 0)
-        if not shut_next and gone < len(motion):
-            shares[gone:] = shares[gone] * (1.0 - _fitted(ramp, len(motion) - gone))
+        past = deed.last + (int(passed[-1]) + 1 if len(passed) else 0)
+        awaits = following.worked.handle if following is not None and following.worked.does == "close" else None
+        if following is not None and following.along is not None:
+            past = max(min(past, following.along[0] - len(ramp)), 0)
+        if past < len(motion):
+            rest = awaits.share if awaits is not None else 0.0
+            shares[past:] = rest + (shares[past] - rest) * (1.0 - _fitted(ramp, len(motion) - past))
     return shares
 
 

@@ -49,9 +49,9 @@ class FilmSet:
         """What a camera sees of it, open in front of a body whose joints in some frames are (T, 22, 3): who has gone
         out by a door is seen through that."""
         x, _, z = joints[len(joints) // 2, 0].tolist()
-        some = joints[::STEP]
-        within = np.array([self.home.room_at((x, z)) is not None for x, z in some[:, 0, [0, 2]].tolist()], dtype=bool)
-        points = (some[within] if within.any() else some).reshape(-1, 3)
+        some = joints[::STEP].reshape(-1, 3)
+        within = self.home.on_floor(some[:, [0, 2]])
+        points = some[within] if within.any() else some
         shown = around(self.props, camera, points, self.home.room_at((x, z)), REACH)
         return [*shown, self.base, self._ground(camera)]
 

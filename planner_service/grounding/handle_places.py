@@ -50,7 +50,7 @@ HEIGHTS: Final = {"high": 1.3, "medium": 0.62}
 UNOPENED, ELSEWHERE, MOVED = 2.5, 0.4, 0.15
 """What it strains not to open all of it; to go to a handle that is a metre from where the hand would have gone, and to
 stand a metre from where one would have stood."""
-MOST: Final = 2.2
+MOST: Final = 1.8
 """What strains more than this is not done by hand."""
 
 
@@ -102,13 +102,13 @@ def handle_place(
             continue
         for share in SHARES if ajar is None else (ajar.share,):
             handle = _handle(piece, fronts[number], does, number, share)
-            strain = UNOPENED * (1.0 - share) + ELSEWHERE * _elsewhere(handle, near)
-            if (best is not None and strain >= best[0]) or _is_blocked(piece, fronts[number], share, depth):
+            less, strain = UNOPENED * (1.0 - share), ELSEWHERE * _elsewhere(handle, near)
+            if (best is not None and less + strain >= best[0]) or _is_blocked(piece, fronts[number], share, depth):
                 continue
             for place, more in _places(handle, piece, fronts[number], near, walkable, scale):
-                if best is None or strain + more < best[0]:
-                    best = strain + more, place
-    return best[1] if best is not None and best[0] < MOST else None
+                if strain + more < MOST and (best is None or less + strain + more < best[0]):
+                    best = less + strain + more, place
+    return best[1] if best is not None else None
 
 
 def _elsewhere(handle: Handle, near: Spot) -> float:

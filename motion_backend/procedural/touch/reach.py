@@ -19,11 +19,10 @@ from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
 from motion_backend.procedural.pose import Pose, interpolate, settle_from, smooth
 from motion_backend.procedural.pose_solver import chest_frame, released, trunk_and_legs
 from motion_backend.procedural.sit.sit_transition import knees_over_feet
-from motion_backend.procedural.touch.hand_actions import Way, deed
+from motion_backend.procedural.touch.hand_actions import Way, deed, pulled
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.hand_placement import Depth, grip_of, lifted_off, placed
-from motion_backend.procedural.touch.hand_pull import pulled
 from motion_backend.procedural.touch.kneel import down_on_knees, prone
 from motion_backend.procedural.touch.reach_keys import (
     Approach,

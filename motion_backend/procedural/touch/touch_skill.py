@@ -56,6 +56,12 @@ def reach(body: Body, part: Part) -> None:
     action = part.action
     bearing = bearing_of(action.emotion, action.caption)
     spot, knelt = spot_of(action), _knelt_at(body, action)
+    if action.handle is not None:
+        body.enter(PhaseKind.WALK)
+        go(body, spot.standing, spot.facing, action)
+        body.enter(PhaseKind.TOUCH)
+        _take_along(body, part, action.handle)
+        return
     if "prone" in action.caption and knelt is None:
         body.note("no room to kneel: squats")
     asked = _HEIGHT.search(action.caption)
@@ -68,9 +74,6 @@ def reach(body: Body, part: Part) -> None:
     go(body, spot.standing, spot.facing, action)
     body.enter(PhaseKind.TOUCH)
     normal = np.asarray(spot.normal, dtype=np.float64)
-    if action.handle is not None and not prone:
-        _take_along(body, part, action.handle)
-        return
     goal = np.asarray(spot.point) + HAND_REST * normal
     obstacles, scale = body.scene.obstacles, body.skeleton.scale
     doing, palm = handling_of(action.caption), palm_on(normal, spot.facing, action.hand)
@@ -121,6 +124,6 @@ def _free_feet(body: Body) -> tuple[int, ...]:
 
 def _knelt_at(body: Body, action: Action) -> Spot | None:
     """The spot as it is touched on the knees; None where it is not, or there is no room."""
-    if "prone" not in action.caption:
+    if "prone" not in action.caption or action.handle is not None:
         return None
     return place_to_kneel(spot_of(action), body.place, body.scene, body.skeleton.scale)
