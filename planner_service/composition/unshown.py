@@ -68,6 +68,8 @@ _WITH: Final = re.compile(
     re.IGNORECASE,
 )
 """What somebody has in the hands meanwhile, and where else it is told to be is not seen."""
+_BEHIND: Final = re.compile(r"behind (?:him|her|them)(?:self|selves)?$", re.IGNORECASE)
+"""Where somebody is who shuts a door."""
 _BARE: Final = re.compile(
     r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|dressing)\b"
 )
@@ -93,9 +95,12 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
     how often it does what it does once."""
     named = _held_words(keyframes)
     told = unshown(clause, {one.piece[0] for one in keyframes})
+    shuts = any(one.does == "close" for one in keyframes)
     besides = [
-        text for text in told if not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named
-    ]
+        text for text in told
+        if (not (match := _WITH.match(text)) or lemma_of(match["what"].lower()) not in named)
+        and not (shuts and _BEHIND.match(text))
+    ]  # fmt: skip
     more = (
         *others_in(clause, keyframes),
         *_things(clause, keyframes),

@@ -32,6 +32,8 @@ BEFORE: Final = 0.001
 """How far what hides something stands before it (metres)."""
 WARM, COLD_LIGHT = (1.9, 1.62, 1.18), (1.15, 1.2, 1.25)
 """Of a shade that is lit, and of the inside of a refrigerator."""
+RIM: Final = 0.008
+"""From the edge of an opening to the boards in it (metres)."""
 DARK, BOARD = (0.13, 0.11, 0.10), (0.42, 0.36, 0.30)
 THINGS: Final = ((0.45, 0.30, 0.28), (0.33, 0.40, 0.47), (0.50, 0.46, 0.36))
 FOOD: Final = ((1.0, 0.55, 0.35), (0.55, 0.85, 0.40), (1.05, 0.95, 0.55), (0.95, 0.35, 0.35))
@@ -194,12 +196,18 @@ def _inside(placed: Placed, low: Point3, high: Point3) -> tuple[Painted, ...]:
     """What is seen where a front was: the dark, or a lit refrigerator, with boards and things on them."""
     (x0, y0, z0), (x1, y1, z1) = low, high
     lit = placed.category == "refrigerator"
-    found: list[Painted] = [(COLD_LIGHT if lit else DARK, block(low, high))]
+    rim, around = _rgb(front_material(placed).color), BEFORE
+    found: list[Painted] = [
+        (rim, block((x0 - around, y0 - around, z0), (x1 + around, y1 + around, z1 - BEFORE))),
+        (COLD_LIGHT if lit else DARK, _quad((x0, y0, z1), (x1, y0, z1), (x1, y1, z1), (x0, y1, z1))),
+    ]
     count = int((y1 - y0) / 0.32)
     paints = FOOD if lit else THINGS
     for number in range(count):
         y, room = y0 + (number + 0.5) * (y1 - y0) / count, (y1 - y0) / count / (1 + (number + 1 == count))
-        found.append(((0.62, 0.68, 0.72) if lit else BOARD, block((x0, y - 0.008, z0), (x1, y + 0.008, z1 + BEFORE))))
+        found.append(
+            ((0.62, 0.68, 0.72) if lit else BOARD, block((x0 + RIM, y - 0.008, z0), (x1 - RIM, y + 0.008, z1 + BEFORE)))
+        )
         for place in range(int((x1 - x0) / 0.13)):
             tall = min((0.11, 0.17, 0.07, 0.14)[(number + 3 * place) % 4], room - 0.03)
             x = x0 + 0.035 + 0.13 * place

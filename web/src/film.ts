@@ -46,7 +46,7 @@ export class Film {
   #raised: Promise<Stage | null>;
   #story: Story | null = null;
   #mode: CameraMode = isStill() ? "orbit" : "follow";
-  #asked = { home: false, body: false };
+  #asked = { home: false, body: false, doors: false };
   /** For how many frames the props on the stage are, and whether more are on their way. */
   #props = { frames: 0, coming: false };
   #opened = false;
@@ -245,6 +245,7 @@ export class Film {
       const glb = await getGlb(propsUrl(id));
       const stage = await this.#raised;
       if (props === this.#props) await stage?.setProps(glb);
+      this.#withoutDoors(glb);
       props.frames = frames;
     } catch (error) {
       console.warn("What is in the hands cannot be shown yet:", error);
@@ -253,6 +254,13 @@ export class Film {
       props.coming = false;
     }
     if (props === this.#props) void this.#fetchProps();
+  }
+
+  /** A home that came before it was known what moves in it comes anew: its doors are among what moves. */
+  #withoutDoors(props: ArrayBuffer): void {
+    if (!props.byteLength || this.#asked.doors) return;
+    this.#asked = { ...this.#asked, home: false, doors: true };
+    void this.#fetchHome();
   }
 
   /** Tell the player how far the film goes by now. */

@@ -93,6 +93,7 @@ export class Stage {
     this.#fading = new Fading(scene, boxesOf(home));
     this.cameraMan.lookout = new Lookout(home);
     scene.add(...subfloors(scene, home));
+    if (this.#home) this.#scene.remove(this.#home);
     this.#scene.add(scene);
     const box = new Box3().setFromObject(scene);
     const sphere = box.getBoundingSphere(new Sphere());

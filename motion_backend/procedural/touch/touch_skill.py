@@ -31,6 +31,8 @@ CALM: Final = 0.5
 """How restless one is whose hand is on something, against the same mood with the hands free."""
 MIN_HOLD: Final = 1.2
 """A hand stays at least so long (seconds)."""
+STAYS: Final = 0.9
+"""Who has opened or shut something does not stay with the hand on it for longer (seconds)."""
 STEPS: Final = 33
 """Places of a handle on its way."""
 TURNS_ALONG: Final = 0.4
@@ -106,7 +108,7 @@ def _take_along(body: Body, part: Part, handle: Handle) -> None:
         for wrist, end in zip(way[[0, -1]], ends, strict=True)
     )
     bearing = bearing_of(action.emotion, action.caption)
-    manner = Manner(bearing, part.hold)
+    manner = Manner(bearing, min(part.hold, STAYS))
     seen = body.scene.depth_about(spot.object_id)
     goes = way, handle.does == "into"
     taken = pull(body.pose, (first, last), goes, manner, body.skeleton, seen, touch_keys(), body.rng)
