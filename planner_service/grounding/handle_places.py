@@ -13,6 +13,7 @@ import numpy as np
 
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.motion import Action, Does, Handle
+from motion_backend.procedural.touch.hand_captions import handling_of
 from motion_backend.rotations import Array
 from planner_service.grounding.opening_places import opening_piece
 from scene_graphs.affordances.affordances import Spot
@@ -50,6 +51,8 @@ HEIGHTS: Final = {"high": 1.3, "medium": 0.62}
 UNOPENED, ELSEWHERE, MOVED = 2.5, 0.4, 0.15
 """What it strains not to open all of it; to go to a handle that is a metre from where the hand would have gone, and to
 stand a metre from where one would have stood."""
+FLIES: Final = frozenset(("strike", "knock"))
+"""What hands do to a front that they do not hold."""
 MOST: Final = 1.8
 """What strains more than this is not done by hand."""
 
@@ -207,7 +210,7 @@ class OpenFronts:
         opened."""
         assert action.spot is not None
         piece = self._piece(action.spot, named)
-        if piece is None:
+        if piece is None or handling_of(action.caption) in FLIES:
             return action
         ajar = self.ajar.get(piece.id)
         if ajar is not None and does != "close":
