@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from motion_backend.motion import RISINGS, Does, Emotion, Skill
-from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
+from planner_service.scripts.script import WISHED, Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
 from planner_service.scripts.still_things import still_in
 from scene_graphs.json_fields import Json
@@ -135,12 +135,12 @@ class ActedBeats:
     @property
     def undone(self) -> tuple[Outcome, ...]:
         """Those that are left undone, as asked."""
-        return tuple(one for one in self.outcomes if one.beat.kind == "undone")
+        return tuple(one for one in self.outcomes if one.beat.kind == "undone" and one.why != WISHED)
 
     @property
     def told(self) -> tuple[Outcome, ...]:
-        """Those that are no deeds, or are only spoken of: nobody is asked to do them."""
-        return tuple(one for one in self.outcomes if not one.beat.asked and one.beat.kind != "undone")
+        """Those that are no deeds, or are only spoken of or wished for: nobody is asked to do them."""
+        return tuple(one for one in self.outcomes if not one.beat.asked and one not in self.undone)
 
     def lines(self) -> list[str]:
         """In words: how many are acted, the missing ones and why, what is left undone, and what these words mean where

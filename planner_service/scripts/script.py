@@ -180,6 +180,12 @@ happened before and is only thought of · what somebody else or the world does, 
 Sunday" · what is said."""
 
 
+HAPPENS: Final = "it happens, and nobody does it"
+"""Why what weather and things do is not acted."""
+WISHED: Final = "it is only wished for"
+"""Why what somebody wants is not acted."""
+
+
 class Beat(_ScriptPart):
     """One thing that a theme says happens, or does not, in the order of time."""
 
@@ -211,8 +217,9 @@ class Beat(_ScriptPart):
 
     @property
     def asked(self) -> bool:
-        """Whether the theme asks for it: all but what is left undone, and what is told and nobody does."""
-        return self.kind != "undone" and (self.kind != "other" or bool(self.who))
+        """Whether the theme asks for it: all but what is left undone or wished for, and what nobody does."""
+        told = self.kind == "undone" or (self.kind == "other" and not self.who)
+        return not (told or self.why == HAPPENS)
 
 
 Pronouns = Literal["he", "she", "they"]

@@ -114,6 +114,8 @@ class ReadBeat:
     """The mood that its own words show."""
     room: str | None = None
     """The room it names."""
+    hero: str = ""
+    """Whom the theme is about, in its words."""
 
     @property
     def text(self) -> str:
@@ -218,7 +220,7 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     clause = replace(clause, text=clause.plainly) if clause.plainly and not who else clause
-    return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
+    return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None), hero)
 
 
 def _is_frightened(clause: Clause) -> bool:

@@ -16,6 +16,7 @@ _LOOKS: Final = re.compile(
     re.IGNORECASE,
 )
 _HANDLES: Final = re.compile(
+    r"(?<!\bthe )(?<!\ban )(?<!\bher )(?<!\bhis )(?<!\btheir )"  # but not "by the open window"
     r"\b(?:open|clos|shut|draw|pull|part|fling|throw|crack|latch|unlatch|wip|clean|wash)\w*\s"
     r"(?:(?!by|at|near|beside|under|from|to|on|in\b)\w+\s){0,3}(?:windows?|curtains?|blinds?|shutters?)\b",
     re.IGNORECASE,
