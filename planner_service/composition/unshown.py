@@ -40,7 +40,7 @@ _NEAR: Final = re.compile(
 """What a deed is told to be done beside."""
 _NOWHERE: Final = frozenset(
     ("windowsill", "sill", "fireplace", "hearth", "fire", "fireside", "stairs", "balcony", "bathtub", "tub", "bath",
-     "shower", "toilet", "cot", "crib", "cradle")
+     "shower", "toilet", "cot", "crib", "cradle", "altar", "easel", "lectern", "workbench", "stepladder", "ladder")
 )  # fmt: skip
 """Places of a home that no home here has."""
 _POSED: Final = re.compile(
