@@ -34,6 +34,8 @@ from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
 from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from planner_service.themes.details import details_of
+from planner_service.themes.lexicon import is_noun
+from planner_service.themes.protagonist import is_person, names_somebody
 from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
@@ -71,9 +73,12 @@ def serve_beats(
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
     acted = with_worked(read, with_things(read, acted))
+    beats = _with_reasons(read, writer, acted)
+    if not planned and _tells_of_nobody(read, beats):
+        raise ThemeError(f"it tells of nobody, and of hardly anything that a body does at home. {LANGUAGE}")
     return LongScript(
         theme=theme,
-        beats=_with_reasons(read, writer, acted),
+        beats=beats,
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
         keyframes=acted if planned else as_hands_hold(acted),
         repairs=(*record.notes, *repairs),
@@ -83,6 +88,15 @@ def serve_beats(
         encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
+
+
+def _tells_of_nobody(read: Sequence[ReadBeat], beats: Sequence[Beat]) -> bool:
+    """Whether words name nobody, and no verb that is no noun too is played, nor half of them: "Red, green, yellow"."""
+    if any(is_person(one.hero) or names_somebody(one.clause) for one in read):
+        return False
+    told = (one.clause.verb and not is_noun(one.text.split()[0].lower()) for one in read)
+    played = any(sure and not beat.why for sure, beat in zip(told, beats, strict=True))
+    return not played and 2 * sum(beat.seen for beat in beats) < len(beats)
 
 
 def _write(

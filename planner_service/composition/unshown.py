@@ -125,8 +125,8 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
         *_poses(clause, keyframes),
         *_counts(clause, keyframes),
     )
-    told = [*besides, *dict.fromkeys(more)]
-    return tuple(text for text in told if not any(text != one and text in one for one in told))
+    words = [*besides, *dict.fromkeys(more)]
+    return tuple(text for text in words if not any(text != one and text in one for one in words))
 
 
 def _held_words(keyframes: Sequence[PlannedKeyframe]) -> frozenset[str]:

@@ -123,7 +123,7 @@ def prose_of(theme: str) -> str:
 def _unnumbered(theme: str) -> str:
     """A numbered list with each item as a sentence."""
     numbers = [int(one["number"] or one["step"]) for one in _NUMBERED.finditer(theme)]
-    if numbers != [*range(1, len(numbers) + 1)] or len(numbers) < _FEWEST_ITEMS:
+    if "\n" in theme or numbers != [*range(1, len(numbers) + 1)] or len(numbers) < _FEWEST_ITEMS:
         return theme
     lead, *items = (part.strip() for part in _NUMBERED.sub("\n", theme).split("\n"))
     items = [item for item in items if item]

@@ -102,6 +102,19 @@ def test_a_theme_of_which_nothing_can_be_acted_is_refused_by_its_words(theme: st
     assert theme.rstrip(".").split()[-1] in str(error.value)
 
 
+@for_each("theme", ["Autumn. Leaves. Wind. Nothing.", "Snow, fog, yellow, music, the sea."])
+def test_words_that_tell_of_nobody_and_of_hardly_a_deed_are_refused(theme: str) -> None:
+    with pytest.raises(ThemeError, match="it tells of nobody"):
+        planned(theme)
+
+
+@for_each(
+    "theme", ["Exhausted. Bed. Lights out.", "Quick lunch, then a nap.", "a very very tired man", "Do ten push-ups."]
+)
+def test_a_note_of_few_words_is_a_theme(theme: str) -> None:
+    assert planned(theme).keyframes
+
+
 @for_each("theme", ["He does not sit down.", "She never lies down.", "Anna is not sitting."])
 def test_somebody_of_whom_it_is_only_told_what_they_do_not_do_is_seen_standing(theme: str) -> None:
     script = planned(theme)
