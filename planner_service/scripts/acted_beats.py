@@ -36,6 +36,8 @@ RESTS: Final = re.compile(
 OF_LIMBS: Final = re.compile(r"\b(?:hands?|arms?|knees?|foot|feet)\b")
 """Words of a note (`Motion.notes`) on nothing but arms and legs."""
 _OF_HANDS: Final = re.compile(r"\b(?:hands?|arms?)\b")
+_OPEN_ARMS: Final = "open arms"
+"""Of a note on how somebody walks."""
 _TELLS_LEGS: Final = re.compile(
     r"\b(?:legs?|knees?|foot|feet|stretch\w*|kneel\w*|knelt|sit-ups?|push-ups?|exercis\w*|yoga)\b"
 )
@@ -246,6 +248,8 @@ def _concerns(words: str, beat: Beat) -> bool:
     piece that something is done in place of must be named; a mood is seen however the arms are."""
     if IN_PLACE_OF in words:
         return re.search(rf"\b{re.escape(words.partition(IN_PLACE_OF)[2])}", beat.text, re.IGNORECASE) is not None
+    if _OPEN_ARMS in words:
+        return "arms" in beat.text  # who "walks out of the door" does so with arms before them too
     if OF_LIMBS.search(words) and not _OF_HANDS.search(words):
         return _TELLS_LEGS.search(beat.text) is not None  # who "enjoys a quiet afternoon" does with bent legs too
     return not (OF_LIMBS.search(words) and (beat.kind == "feeling" or RESTS.match(beat.text)))
