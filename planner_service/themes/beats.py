@@ -17,6 +17,7 @@ from planner_service.themes.language import ANOTHER, ENGLISH, foreign_language, 
 from planner_service.themes.lexicon import grammar, is_known_word, lemma_of, participle
 from planner_service.themes.memories import RECALLING, recalled_in
 from planner_service.themes.no_deeds import tells_no_deed
+from planner_service.themes.outline import lines_of
 from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
 from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -145,11 +146,12 @@ def clean(theme: object) -> str:
 def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
     text = clean(theme)
-    _refuse_foreign(text)
+    lines = lines_of(text)
+    _refuse_foreign(lines)
     clauses = clauses_of_text(text)
-    asks = _ASKED.match(text) and all(one.doer.lower() in _ASKING for one in clauses)
+    asks = _ASKED.match(lines) and all(one.doer.lower() in _ASKING for one in clauses)
     told = {one.doer.lower() for one in clauses if is_person(one.doer)} - grammar().subjects - {"me", "us"}
-    if asks or (_QUESTIONS.fullmatch(text) and not told):
+    if asks or (_QUESTIONS.fullmatch(lines) and not told):
         raise ThemeError(f"{text[:60]!r} asks for something, and tells of nobody.")
     return read_beats(clauses)
 
@@ -299,8 +301,10 @@ def names_a_thing(clause: Clause) -> bool:
 def _refuse_foreign(text: str) -> None:
     words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
     plain = [token.low for token in tokens_of(text) if token.text.isalpha() and token.text.islower()]
-    unknown = len(plain) > 3 and 2 * sum(map(is_known_word, plain)) < len(plain)
-    if unknown or not any(re.search(r"[a-z]", word) for word in words) or language_of(text) not in (ENGLISH, ANOTHER):
+    known_words = sum(map(is_known_word, plain))
+    unknown = len(plain) > 3 and 2 * known_words < len(plain)
+    foreign = 10 * known_words < 9 * len(plain) and language_of(text) not in (ENGLISH, ANOTHER)  # "no TV, no phone"
+    if unknown or foreign or not any(re.search(r"[a-z]", word) for word in words):
         language = foreign_language(text)
         what = f"looks like {language}" if language != ANOTHER else "is no everyday English"
         raise ThemeError(f"{text[:60]!r} {what}. {LANGUAGE}")
