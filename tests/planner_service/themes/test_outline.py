@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import pytest
+from for_each import for_each
 
 from planner_service.themes.beats import ThemeError, beats_of
 from planner_service.themes.outline import lines_of
-from tests.for_each import for_each
 
 DEEDS = ("sit down", "read", "go to bed")
 OUTLINES = (
