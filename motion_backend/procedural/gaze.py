@@ -136,7 +136,11 @@ def gazing(pose: Pose, body: Body, part: Part) -> Pose:
     # Who walks to a seat is not yet in the pose that its caption names.
     named = part.kind not in WALKS or part.action.skill is Skill.LOCO
     told = named and re.search(row.told, part.action.caption.lower())
-    if held or _sleeps(pose, body, part) or (told and (part.kind is not PartKind.HOLD or re.search(row.kept, part.action.caption.lower()))):
+    if (
+        held
+        or _sleeps(pose, body, part)
+        or (told and (part.kind is not PartKind.HOLD or re.search(row.kept, part.action.caption.lower())))
+    ):
         return pose
     looks = _beside_what_is_told(pose, body, part, row) if told else _looks(pose, body, part, row)
     return turned_to(pose, list(looks), body.posture, body.skeleton, row)
