@@ -18,6 +18,7 @@ import numpy as np
 
 from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill, moment
 from motion_backend.procedural.lie.lie_pose import place_to_lie
+from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_captions import handling_of
 from motion_backend.procedural.touch.hand_contacts import suits, to_knock_on
@@ -64,6 +65,11 @@ A_STEP: Final = 0.9
 def stays(caption: str) -> float:
     """For how many seconds a caption of loco leaves the body where it is ("stand still", "clapping hands"); 0 goes."""
     return walk_style(Emotion.NEUTRAL, caption).stays
+
+
+def held(skill: Skill, caption: str) -> float:
+    """For how many seconds what is done at a piece goes on, or lying on it."""
+    return max(HOLDS[skill], lie_style(Emotion.NEUTRAL, caption).stays if skill is Skill.LIEDOWN else 0.0)
 
 
 def heading_after(done: Sequence[tuple[Action, Point | None]], walkable: Walkable) -> float | None:
@@ -237,7 +243,7 @@ class _Stage:
                 self.resting = spot
             self.on = None if keyframe.skill is Skill.TOUCH else spot
             self.at, self.walks_on = spot.standing, False
-            hold, already = HOLDS[keyframe.skill], getattr(keyframe, "already", False)
+            hold, already = held(keyframe.skill, keyframe.caption), getattr(keyframe, "already", False)
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=hold, already=already)
         self.on = None
         self.walks_on |= keyframe.skill is Skill.LOCO
