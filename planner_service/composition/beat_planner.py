@@ -6,7 +6,7 @@ for (SIMS 3.2).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -20,6 +20,7 @@ from planner_service.composition.gainsaid import is_gainsaid
 from planner_service.composition.held_things import as_hands_hold, is_handled, with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
+from planner_service.composition.reactions import with_reactions
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.composition.rest_place import BY_A_WALL
 from planner_service.composition.unacted_beats import UNSHOWN
@@ -71,11 +72,12 @@ def serve_beats(
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
     acted = with_worked(read, with_things(read, acted))
+    acted, reacted = with_reactions(read, acted if planned else as_hands_hold(acted))
     return LongScript(
         theme=theme,
-        beats=_with_reasons(read, writer, acted),
+        beats=_with_reasons(read, writer, acted, reacted),
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
-        keyframes=acted if planned else as_hands_hold(acted),
+        keyframes=acted,
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
         method=request.method,
@@ -137,9 +139,13 @@ def _named_part(served: PlannedBeat, library: ScriptLibrary) -> Part | None:
 
 
 def _with_reasons(
-    read: Sequence[ReadBeat], writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+    read: Sequence[ReadBeat],
+    writer: KeyframeWriter,
+    keyframes: Sequence[PlannedKeyframe],
+    reacted: Mapping[int, str],
 ) -> tuple[Beat, ...]:
-    """The beats as they are planned: those that no keyframe shows with the reason.
+    """The beats as they are planned: those that no keyframe shows with the reason; nobody is asked to do what is
+    `reacted` to.
 
     What a mood alone shows ("grins") is a feeling, and shown wherever something is done in that mood.
     """
@@ -147,6 +153,9 @@ def _with_reasons(
     moods = {keyframe.mood for keyframe in keyframes}
     beats = []
     for index, one in enumerate(read):
+        if index in reacted:
+            beats.append(one.beat.model_copy(update={"why": reacted[index], "kind": "other", "who": ""}))
+            continue
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
         kind = "feeling" if index in writer.moody else one.beat.kind

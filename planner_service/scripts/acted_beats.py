@@ -16,6 +16,8 @@ from scene_graphs.json_fields import Json
 UNDONE: Final = "left undone, as the theme asks"
 IN_ITS_PLACE: Final = "the body is seen doing something else in its place"
 """Why what is only stood for is not acted."""
+REACTED: Final = "the body reacts to it"
+"""Why what happens, and nobody does, is not acted."""
 AT_THE: Final = "at the"
 IN_PLACE_OF: Final = " in place of the "
 """Words of a note on hands that are at another piece than the theme names, before and after that."""
@@ -142,6 +144,11 @@ class ActedBeats:
         """Those that are no deeds, or are only spoken of: nobody is asked to do them."""
         return tuple(one for one in self.outcomes if not one.beat.asked and one.beat.kind != "undone")
 
+    @property
+    def reacted(self) -> tuple[Outcome, ...]:
+        """Those that happen, and that the body is seen to react to: nobody does them."""
+        return tuple(one for one in self.told if one.why.startswith(REACTED))
+
     def lines(self) -> list[str]:
         """In words: how many are acted, the missing ones and why, what is left undone, and what these words mean where
         something is not acted; none without beats."""
@@ -165,7 +172,12 @@ class ActedBeats:
                 for one in self.outcomes
                 if one.acted and one.unshown
             ),
-            *(f"told, not acted: {one.beat.text} ({one.why})" for one in self.told if one.why and not one.stood_for),
+            *(f"reacted to: {one.beat.text} ({one.why.removeprefix(REACTED + ': ')})" for one in self.reacted),
+            *(
+                f"told, not acted: {one.beat.text} ({one.why})"
+                for one in self.told
+                if one.why and not one.stood_for and one not in self.reacted
+            ),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
             *([] if plain else self._meanings()),
         ]
