@@ -65,8 +65,8 @@ def dict_to_motion(data: dict[str, Any]) -> Motion:
 def phase_to_dict(phase: Phase) -> dict[str, Any]:
     """What a body did in some frames, who made them, and why another backend than the one asked for."""
     row = {"part": phase.kind.value, "start": phase.start, "stop": phase.stop}
-    row |= {"backend": phase.backend, "fallback": phase.fallback or None}
-    return row | ({"reacts": phase.reacts} if phase.reacts else {})
+    who = {"backend": phase.backend, "fallback": phase.fallback or None}
+    return row | who | ({"reacts": phase.reacts} if phase.reacts else {})
 
 
 def _dict_to_phase(row: dict[str, Any]) -> Phase:

@@ -123,7 +123,9 @@ def _phases(data: Mapping[str, NDArray[Any]]) -> tuple[Phase, ...]:
     fallbacks = data["phase_fallbacks"].tolist() if "phase_fallbacks" in data else nobody
     reacts = data["phase_reacts"].tolist() if "phase_reacts" in data else nobody
     rows = zip(kinds, data["phase_frames"].tolist(), backends, fallbacks, reacts, strict=True)
-    return tuple(Phase(PhaseKind(kind), *frames, *who, how) for kind, frames, *who, how in rows)
+    return tuple(
+        Phase(PhaseKind(kind), start, stop, backend, why, how) for kind, (start, stop), backend, why, how in rows
+    )
 
 
 _STAND_UP = rotations.rotvec_to_quat(np.array([np.pi / 2, 0.0, 0.0]))

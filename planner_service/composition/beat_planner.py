@@ -39,6 +39,8 @@ from planner_service.themes.theme_words import theme_words
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
+FACES: Final = ("smile", "grin", "beam", "smirk", "frown", "scowl")
+"""What is seen in a face, whatever else is done: nobody laughs or sobs in that alone."""
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
 _LIKELY: Final = 3
@@ -154,7 +156,7 @@ def _with_reasons(
     beats = []
     for index, one in enumerate(read):
         if index in reacted:
-            beats.append(one.beat.model_copy(update={"why": reacted[index], "kind": "other", "who": ""}))
+            beats.append(one.beat.model_copy(update={"why": reacted[index]}))
             continue
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
@@ -169,7 +171,7 @@ def _besides(
 ) -> tuple[str, ...]:
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     if index in writer.moody:
-        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
+        seen = read.clause.verb not in EXPRESSIONS or (read.clause.verb in FACES and read.beat.emotion in EXPRESSED)
         known = (read.sure or read.beat.kind == "feeling") and seen and not _does_more(read)
         known = known and not is_gainsaid(read.clause, [one for one in keyframes if one.mood is read.beat.emotion])
         return details_of(read.clause) if known else (read.text,)

@@ -12,8 +12,8 @@ from typing import Final
 
 from motion_backend.motion import Emotion, Reacts, Skill
 from planner_service.composition.deed_patterns import says
-from planner_service.scripts.acted_beats import REACTED, connects
-from planner_service.scripts.script import PlannedKeyframe, Reacted
+from planner_service.scripts.acted_beats import connects
+from planner_service.scripts.script import REACTED, PlannedKeyframe, Reacted
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.protagonist import is_person
@@ -32,6 +32,8 @@ ROUSED: Final = 3
 _SLOW: Final = re.compile(r"\b(?:slow|stroll)")
 _HEAVY: Final = (Emotion.TIRED, Emotion.SAD, Emotion.DRUNK)
 _MEANWHILE: Final = ("while", "as", "when")
+_NOT_NOW: Final = ("before", "until", "if", "unless", "lest", "because", "since", "that", "to")
+"""Joints of what does not happen there and then."""
 _SOMEBODY: Final = frozenset(("somebody", "someone", "nobody", "none"))
 
 
@@ -69,7 +71,7 @@ class Taken:
 def taken(read: ReadBeat) -> Taken | None:
     """How somebody takes what a beat tells of; None where nothing happens in it."""
     beat, clause = read.beat, read.clause
-    if beat.kind not in ("other", "deed", "feeling") or clause.denied:
+    if beat.kind not in ("other", "deed", "feeling") or clause.denied or clause.joint in _NOT_NOW:
         return None
     if beat.kind != "other" and clause.subject and clause.verb not in _HEARS:
         return None

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from motion_backend.motion import RISINGS, Does, Emotion, Skill
-from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
+from planner_service.scripts.script import REACTED, Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
 from planner_service.scripts.still_things import still_in
 from scene_graphs.json_fields import Json
@@ -16,8 +16,6 @@ from scene_graphs.json_fields import Json
 UNDONE: Final = "left undone, as the theme asks"
 IN_ITS_PLACE: Final = "the body is seen doing something else in its place"
 """Why what is only stood for is not acted."""
-REACTED: Final = "the body reacts to it"
-"""Why what happens, and nobody does, is not acted."""
 AT_THE: Final = "at the"
 IN_PLACE_OF: Final = " in place of the "
 """Words of a note on hands that are at another piece than the theme names, before and after that."""
@@ -26,6 +24,8 @@ STANDS: Final = f"something stands for it: {IN_ITS_PLACE}"
 NOT_SHOWN: Final = "not shown: words that the body does not show"
 LEFT_UNDONE: Final = "left undone: the theme says it is not done"
 """What is meant by the words of `ActedBeats.lines`."""
+FELT: Final = 1.5
+"""Seconds that a mood must be on the screen to be seen."""
 RESTS: Final = re.compile(
     r"(?:(?:takes?|took|has|have|had) )?an? (?:\w+ )?(?:nap|sleep|doze|snooze|siesta|lie-down|rest)\b"
     r"|(?:\w+ly )?(?:sits?|sat|lies|lie|lay|settles?|sinks?|flops?|drops?|slumps?|curls?|perch(?:es)?|collapses?|rests?"
@@ -263,13 +263,27 @@ def _concerns(words: str, beat: Beat) -> bool:
     return not (OF_LIMBS.search(words) and (beat.kind == "feeling" or RESTS.match(beat.text)))
 
 
+def _about(index: int, shots: Sequence[Shot]) -> list[Shot]:
+    """What is done just before a beat that nothing shows by itself, and what is done next, with the way there: a mood
+    is seen there or nowhere."""
+    before = [max(shot.beats) for shot in shots if shot.beats and max(shot.beats) < index]
+    after = [min(shot.beats) for shot in shots if shot.beats and min(shot.beats) > index]
+    near = {*([max(before)] if before else []), *([min(after)] if after else [])}
+    return [shot for shot in shots if not near.isdisjoint(shot.beats)]
+
+
+def _is_long_enough(shot: Shot) -> bool:
+    """Whether a mood can be seen in it: for so long, once it has been moved."""
+    return shot.reached is None or shot.seconds >= FELT
+
+
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:
     """Why a beat is not acted; empty where it is."""
     if beat.why or beat.kind == "undone":
         return beat.why or UNDONE
     own = [shot for shot in shots if index in shot.beats]
-    if not own and beat.kind == "feeling" and beat.emotion is not Emotion.NEUTRAL:  # in what is done in that mood
-        own = [shot for shot in shots if shot.mood is beat.emotion]
+    if not own and beat.kind == "feeling" and beat.emotion is not Emotion.NEUTRAL:
+        own = [shot for shot in _about(index, shots) if shot.mood is beat.emotion and _is_long_enough(shot)]
     if not own:
         return "no keyframe is left that shows it"
     # What only leads there shows a beat just where nothing else does: "walks to the window".

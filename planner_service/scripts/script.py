@@ -187,6 +187,8 @@ class Retrieved(_ScriptPart):
     score: float
 
 
+REACTED: Final = "the body reacts to it"
+"""Why what happens, and nobody does, is not acted."""
 BeatKind = Literal["deed", "feeling", "undone", "memory", "other", "speech"]
 """What a beat is: something done at home now · how somebody feels · what is not done, or only wished for · what
 happened before and is only thought of · what somebody else or the world does, or, of nobody, what is only told: "it is
@@ -224,8 +226,10 @@ class Beat(_ScriptPart):
 
     @property
     def asked(self) -> bool:
-        """Whether the theme asks for it: all but what is left undone, and what is told and nobody does."""
-        return self.kind != "undone" and (self.kind != "other" or bool(self.who))
+        """Whether the theme asks for it: all but what is left undone, what is told and nobody does, and what only
+        happens, and is reacted to."""
+        told = self.kind == "undone" or (self.kind == "other" and not self.who)
+        return not (told or self.why.startswith(REACTED))
 
 
 Pronouns = Literal["he", "she", "they"]
