@@ -40,6 +40,8 @@ class _Reacting:
     seconds: float
     doing: str
     """What trunk and hands do: one of `gestures.gesture_names`; nothing where it is empty."""
+    lying: str = ""
+    """The same of who lies."""
     from_s: float = 0.0
     """When the head sets out,"""
     turn_s: float = 0.0
@@ -69,7 +71,7 @@ def react(body: Body, part: Part) -> None:
     held = idle(body.pose, row.seconds, restless, body.rng, FPS)
     if body.posture is Posture.SEATED:
         held = follow(held, body.pose, body.holds, body.skeleton)
-    body.add(gesture(held, row.doing))
+    body.add(gesture(held, row.lying if body.posture is Posture.LYING else row.doing))
 
 
 def looking(pose: Pose, body: Body, part: Part) -> Pose:
