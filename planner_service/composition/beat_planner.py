@@ -17,10 +17,10 @@ from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.earlier_deeds import with_its_noun
 from planner_service.composition.gainsaid import is_gainsaid
+from planner_service.composition.heard_events import with_reactions
 from planner_service.composition.held_things import as_hands_hold, is_handled, with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
-from planner_service.composition.reactions import with_reactions
 from planner_service.composition.request import RULES, Record, Request
 from planner_service.composition.rest_place import BY_A_WALL
 from planner_service.composition.unacted_beats import UNSHOWN

@@ -269,7 +269,9 @@ class DeedReader:
         if one.beat.kind == "deed" and one.clause.verb in _SMILES:  # seen in a face
             return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
         told = deed_of(one.clause) if one.beat.kind in ("deed", "feeling") else None
-        if one.beat.kind == "feeling" and not one.clause.verb and not is_adverb(one.text):  # "Frightened, …"
+        if one.beat.kind == "feeling" and not (
+            one.clause.verb or one.clause.place or is_adverb(one.text)
+        ):  # "Frightened, …"
             being = replace(one.clause, verb="be", lemmas=("be", *one.clause.lemmas), aside=False)
             told = deed_of(being)
             one = replace(one, clause=being) if told is not None and told.is_gesture else one

@@ -7,7 +7,7 @@ from for_each import for_each
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Reacts, Skill
 from planner_service.composition.compose import compose
-from planner_service.composition.reactions import taken
+from planner_service.composition.heard_events import taken
 from planner_service.composition.request import Request
 from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.built_in_scripts import built_in
