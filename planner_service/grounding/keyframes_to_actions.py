@@ -16,7 +16,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill, moment
+from motion_backend.motion import RISINGS, Action, Emotion, Posture, Reaction, Skill, moment
 from motion_backend.procedural.lie.lie_pose import place_to_lie
 from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_skill import seat_for
@@ -32,7 +32,7 @@ from planner_service.grounding.seat_tables import done_at_tables
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
-from planner_service.scripts.script import Keyframe
+from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
 from planner_service.themes.opening_words import Kind, comes_in, goes_out, goes_to_window, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
@@ -114,6 +114,8 @@ def in_front(
 NEEDS = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}
 HOLDS = {Skill.SITDOWN: 2.5, Skill.LIEDOWN: 3.0, Skill.TOUCH: 1.4}
 """Seconds a reached pose is held."""
+RESTS_BEFORE = 1.0
+"""Seconds of rest before what a story begins with happens."""
 LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 STANDS_ON_FLOOR = 0.3
@@ -195,7 +197,15 @@ def act(
         for one in stage.walks(drafts, places, begins, aimed)
     ]
     named = [replace(one, holds=keyframes[one.keyframe].held or one.holds) for one in acted]
+    named = [_reacting(one, keyframes[one.keyframe]) for one in named]
     return tuple(lingering(one, said[one.keyframe] if said else "") for one in named)
+
+
+def _reacting(action: Action, keyframe: Keyframe) -> Action:
+    """An action with what happens before it or after it: who only rests there at first does not for long."""
+    rows = keyframe.reacts if isinstance(keyframe, PlannedKeyframe) else ()
+    hold = RESTS_BEFORE if rows and action.already else action.hold
+    return replace(action, hold=hold, reacts=tuple(Reaction(row.how, row.at, row.after) for row in rows))
 
 
 class _Stage:
@@ -589,7 +599,8 @@ def height_of(caption: str) -> str:
 def action_to_dict(action: Action) -> dict[str, Any]:
     """Plain values of an action for story.json."""
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    for name in ("lacks", "begins", "by"):
+    plain["reacts"] = [vars(one) for one in action.reacts]
+    for name in ("lacks", "begins", "by", "reacts"):
         if not plain[name]:
             del plain[name]
     return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}
