@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
@@ -37,18 +37,22 @@ class FilmSet:
     """The height of the ground (metres)."""
 
     @staticmethod
-    def of(home: Home) -> FilmSet:
-        """A home on its base."""
+    def of(home: Home, but: Collection[str] = ()) -> FilmSet:
+        """A home on its base, `but` for the meshes of these names."""
         from scene_graphs.meshes.interior_mesh import base_mesh
 
         mesh = base_mesh(home)
         base = Solid(mesh.vertices, mesh.faces, mesh.color, outside=True)
-        return FilmSet(home, tuple(home_props(home)), base, float(mesh.vertices[:, 1].min()))
+        return FilmSet(home, tuple(home_props(home, but)), base, float(mesh.vertices[:, 1].min()))
 
     def seen(self, camera: Camera, joints: Array) -> Sequence[Solid]:
-        """What a camera sees of it, open in front of a body whose joints in some frames are (T, 22, 3)."""
+        """What a camera sees of it, open in front of a body whose joints in some frames are (T, 22, 3): who has gone
+        out by a door is seen through that."""
         x, _, z = joints[len(joints) // 2, 0].tolist()
-        shown = around(self.props, camera, joints[::STEP].reshape(-1, 3), self.home.room_at((x, z)), REACH)
+        some = joints[::STEP].reshape(-1, 3)
+        within = self.home.on_floor(some[:, [0, 2]])
+        points = some[within] if within.any() else some
+        shown = around(self.props, camera, points, self.home.room_at((x, z)), REACH)
         return [*shown, self.base, self._ground(camera)]
 
     def sight(self, place: Point3) -> Sight:
