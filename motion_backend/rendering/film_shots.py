@@ -35,8 +35,11 @@ from motion_backend.skeleton import INDEX
 if TYPE_CHECKING:
     from scene_graphs.home import Home
 
-PITCHES: Final = (0.16, 0.34)
-"""From above, in radians: near the eyes of who stands, and over low furniture."""
+EYES: Final = (1.2, 1.5, 1.95)
+"""Metres that a camera stands high: at the eyes of who sits, of who stands, and over low furniture."""
+LEVEL: Final = (1.0, 0.12, 3.0)
+"""What it counts to stand higher than a person does, from how many radians from above on it counts to look down, and
+what each of those counts."""
 CLOSE_PITCHES: Final = (0.06, 0.30), (0.06, 0.30, 0.60, 0.95)
 """The same from near, of who is upright, whose crown nobody wants to see, and of who lies."""
 NEAREST: Final = 2.3
@@ -45,8 +48,9 @@ CLOSEST: Final = {Subject.FACE: 1.25, Subject.HANDS: 1.2}
 """The same from near."""
 NO_LONGER_NEAR: Final = 2.6
 """Metres from which on a look from near shows no more than one of the whole: who stoops moves head and hand far."""
-FRAME: Final = 0.84
-"""The share of a picture that all of a body keeps within."""
+FRAME, OVER_WORDS = 0.84, (0.88, 0.64)
+"""The share of a picture that all of a body keeps within, to either side and of its upper and of its lower half: below
+that words are told."""
 SAMPLES: Final = 5
 """Frames of a shot that are looked at."""
 ALIKE, AS_NEAR = np.radians(30.0), 1.4
@@ -85,8 +89,8 @@ STEEP, LIES = (1.0, 0.3), 0.5
 """What a radian from above counts from near, of who is upright and of who lies: whose head's up is less than that."""
 FROM_FEET, OBLIQUE = 4.0, 0.3
 """What it counts to look at who lies along their legs, soles first, and the cosine from which on that begins."""
-FROM_INSIDE: Final = 1.0
-"""What it counts to be in the room, from near."""
+INSIDE, FROM_INSIDE = 0.6, 1.0
+"""What it counts to be in the room, of a look at the whole and from near."""
 AT_DOOR: Final = 3.0
 """What it counts in the first shot to see the door by which somebody comes in."""
 TO_COUNTERPART: Final = 4.0
@@ -103,6 +107,8 @@ ASIDE: Final = (0.19, 0.12, 0.06)
 """Radians by which a camera is turned to the side, at most so that a body that was in the middle is at a third."""
 OFF_CENTRE: Final = 0.2
 """What that counts."""
+STEEPEST: Final = 0.45
+"""The sine of the angle from above at which a camera looks at the whole of a body, at most."""
 EXACT: Final = 0.02
 """Metres that what was just within a picture may be beyond, where it is turned."""
 TRIES: Final = 12
@@ -238,10 +244,11 @@ class _Director:
         lying = rotations.rotate(self.turns[frames, 0], np.array([0.0, 1.0, 0.0]))
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])), yaws)
         scored = []
-        for pitch in PITCHES:
+        for eye in EYES:
             for index, yaw in enumerate(yaws.tolist()):
-                camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
-                score = float(liked[index]) + sight.score(camera, poses)
+                camera = _standing(yaw, eye, points, self.aspect, NEAREST)
+                score = float(liked[index]) + sight.score(camera, poses) - _down(camera)
+                score += INSIDE * sight.indoors(camera)
                 score -= FAR * _distance(camera) + FROM_FEET * _from_feet(lying, -camera.axes[2])
                 if len(watched):
                     score += WATCHED * _is_faced(ahead, -camera.axes[2], widest)
@@ -457,14 +464,41 @@ def _turns(ahead: Array, towards: Array) -> Array:
     return np.asarray(np.arccos(np.clip(ahead @ towards, -1.0, 1.0)))
 
 
-def _fitted(yaw: float, pitch: float, points: Array, aspect: float, nearest: float) -> Camera:
-    """As near as all points (N, 3), with the skin around them, stay well within the picture."""
+def _fitted(
+    yaw: float, pitch: float, points: Array, aspect: float, nearest: float, halves: tuple[float, float] = (FRAME, FRAME)
+) -> Camera:
+    """As near as all points (N, 3), with the skin around them, stay well within the picture: within so much of its
+    upper and of its lower half."""
     target = _middle(points)
-    across, up, ahead = np.moveaxis((points - target) @ orbit(target, 1.0, yaw, pitch).axes.T, -1, 0)
-    wide = np.tan(FOV / 2) * FRAME
-    # A point is within the picture where its distance to the axis, with skin, is at most `wide` times its depth.
-    asked = [(np.abs(up) + MARGIN) / wide - ahead, (np.abs(across) + MARGIN) / (wide * aspect) - ahead, MARGIN - ahead]
-    return orbit(target, max(nearest, float(np.max(asked))), yaw, pitch, FOV)
+    axes = orbit(target, 1.0, yaw, pitch).axes
+    across, up, ahead = np.moveaxis((points - target) @ axes.T, -1, 0)
+    upper, lower = np.tan(FOV / 2) * np.array(halves)
+    half, wide = (upper + lower) / 2, np.tan(FOV / 2) * FRAME * aspect
+    # A point is within the picture where its distance to the axis, with skin, is at most `upper`, `lower` or `wide`
+    # times its depth; the axis goes below the middle by so much that both halves are as full.
+    asked = [
+        (up + MARGIN - upper * ahead) / half, (MARGIN - up - lower * ahead) / half,
+        (np.abs(across) + MARGIN) / wide - ahead, MARGIN - ahead,
+    ]  # fmt: skip
+    distance = max(nearest, float(np.max(asked)))
+    x, y, z = (np.asarray(target) - (upper - lower) / 2 * distance * axes[1]).tolist()
+    return orbit((x, y, z), distance, yaw, pitch, FOV)
+
+
+def _standing(yaw: float, eye: float, points: Array, aspect: float, nearest: float) -> Camera:
+    """The same from a camera that stands so high (metres), or that looks level at what is higher; told words lie on
+    nothing of it."""
+    camera, pitch = _fitted(yaw, 0.1, points, aspect, nearest, OVER_WORDS), 0.1
+    for _ in range(2):
+        pitch = float(np.arcsin(np.clip((eye - camera.target[1]) / _distance(camera), 0.0, STEEPEST)))
+        camera = _fitted(yaw, pitch, points, aspect, nearest, OVER_WORDS)
+    return camera
+
+
+def _down(camera: Camera) -> float:
+    """What it counts against a camera to stand high and to look down."""
+    high, free, steep = LEVEL
+    return high * (camera.eye[1] > EYES[1] + 0.25) + steep * max(-float(np.arcsin(camera.axes[2][1])) - free, 0.0)
 
 
 def _turned(camera: Camera, radians: float) -> Camera:
@@ -477,10 +511,8 @@ def _turned(camera: Camera, radians: float) -> Camera:
 def _holds(camera: Camera, points: Array, aspect: float) -> bool:
     """Whether all points (N, 3), with the skin around them, are well within the picture."""
     across, up, ahead = np.moveaxis(camera.view(points), -1, 0)
-    wide = np.tan(FOV / 2) * FRAME * ahead
-    return bool(
-        (np.abs(up) + MARGIN <= wide + EXACT).all() and (np.abs(across) + MARGIN <= wide * aspect + EXACT).all()
-    )
+    upper, lower, wide = (np.tan(FOV / 2) * share * ahead + EXACT - MARGIN for share in (*OVER_WORDS, FRAME * aspect))
+    return bool((up <= upper).all() and (-up <= lower).all() and (np.abs(across) <= wide).all())
 
 
 def _distance(camera: Camera) -> float:
