@@ -42,6 +42,8 @@ LEVEL: Final = (1.0, 0.12, 3.0)
 what each of those counts."""
 CLOSE_PITCHES: Final = (0.06, 0.30), (0.06, 0.30, 0.60, 0.95)
 """The same from near, of who is upright, whose crown nobody wants to see, and of who lies."""
+FROM_BELOW, BOWED = (-0.10, 0.06, 0.24), -0.35
+"""Of a head that is bowed, whose face is seen from below, and from which height on of where it looks it is."""
 NEAREST: Final = 2.3
 """Metres from the middle of what is seen."""
 CLOSEST: Final = {Subject.FACE: 1.25, Subject.HANDS: 1.2}
@@ -141,14 +143,19 @@ def film_shots(
     director = _Director(motion, joints, turns, FilmSet.of(home), aspect, props)
     before: FilmShot | None = None
     for cut in film_cuts(motion, joints, starts, role, edit, props):
-        whole = director.shot(cut.whole, before)
-        for part in _parts(cut, whole, director):
+        for part in _parts(cut, director, before):
             yield part
             before = part
 
 
-def _parts(cut: Cut, whole: FilmShot, director: _Director) -> Iterator[FilmShot]:
-    """A shot of the whole, with what is worth it seen from near, if any camera sees that."""
+def _parts(cut: Cut, director: _Director, before: FilmShot | None) -> Iterator[FilmShot]:
+    """A shot of the whole, with what is worth it seen from near, if any camera sees that; nothing else where that is
+    all of it."""
+    if cut.close is not None and (cut.close.start, cut.close.stop) == (cut.start, cut.stop):
+        close = director.close_up(cut.close, before)
+        yield director.shot(cut.whole, before) if close is None else close
+        return
+    whole = director.shot(cut.whole, before)
     close = director.close_up(cut.close, whole) if cut.close is not None else None
     if close is None:
         yield whole
@@ -179,10 +186,10 @@ class _Director:
         who does not walk one with the face, if there is any."""
         return self._best(framing, self._views(framing, before))[0]
 
-    def close_up(self, close: Framing, before: FilmShot) -> FilmShot | None:
+    def close_up(self, close: Framing, before: FilmShot | None) -> FilmShot | None:
         """The same from near; None where something hides it from all cameras, or is in the way of all, and of who
         looks out of a window or is at a door, which would not be seen."""
-        there = self._counterpart(close)
+        there = None if close.of_face else self._counterpart(close)
         views = self._near(close, before) if there is None or there.kind is Kind.MIRROR else []
         if not views:
             return None
@@ -194,7 +201,7 @@ class _Director:
         that shows most; and whether it is enough."""
         start, stop = framing.start, framing.stop
         bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
-        counterpart = self._counterpart(framing)
+        counterpart = None if framing.of_face else self._counterpart(framing)
         if counterpart is not None:
             bodies = replace(bodies, face=None if counterpart.kind is Kind.WINDOW else bodies.face, profile=True)
         telling = [view for view in views if view.tells]
@@ -205,7 +212,9 @@ class _Director:
             best = max([best, *others], key=lambda one: one.worth)
         aside = [self._looked(framing, bodies, view) for view in best.view.aside(self.aspect)]
         best = max([best, *aside], key=lambda one: one.worth)
-        return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), best.worth[0][0]
+        # Hands may be before a face that weeps, and a head that sank shows its crown.
+        enough = any(best.worth[0]) if framing.of_face else best.worth[0][0]
+        return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), enough
 
     def _looked(self, framing: Framing, bodies: Appearances, view: _View) -> _Looked:
         """A view of which a small picture was looked at."""
@@ -308,7 +317,7 @@ class _Director:
         speed = self.motion.fps * np.linalg.norm(np.diff(hands, axis=0), axis=-1)
         return bool(np.median(speed, axis=0).max() > MOVES)
 
-    def _near(self, close: Framing, before: FilmShot) -> list[_View]:
+    def _near(self, close: Framing, before: FilmShot | None) -> list[_View]:
         """Cameras near a face, a quarter turned, or beside an arm that touches, with whose head and
         shoulders it is, best first; none is in furniture."""
         frames = _sampled(close.start, close.stop)
@@ -321,9 +330,15 @@ class _Director:
         points = np.concatenate([_head(poses, turns), hands, *held])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
-        front = self._front(close, sight)
-        upright = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
+        front = None if close.of_face else self._front(close, sight)
+        tall = turns[:, 0 if close.of_face else INDEX["head"]]  # a head may hang between the knees of who sits
+        upright = rotations.rotate(tall, np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
         pitches, steep = CLOSE_PITCHES[0 if upright else 1], STEEP[0 if upright else 1]
+        bowed = close.of_face and upright and ahead[:, 1].mean() < BOWED
+        if bowed:  # who is before the trunk, and lower, sees most of it
+            ahead = rotations.rotate(turns[:, 0], np.array([0.0, 0.0, 1.0])) * [1.0, 0.0, 1.0]
+            ahead /= np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
+            pitches = FROM_BELOW
         scored = []
         for pitch in pitches:
             for yaw in _yaws(front).tolist():
@@ -333,7 +348,7 @@ class _Director:
                 towards = -camera.axes[2]
                 if float(np.mean(_turns(ahead, towards))) > WIDEST_NEAR[close.subject]:
                     continue
-                score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * pitch
+                score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * abs(pitch)
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score += TO_FRONT * front.seen(camera) if front is not None else 0.0

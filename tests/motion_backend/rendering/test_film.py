@@ -26,7 +26,7 @@ from motion_backend.rendering.film_frames import compile_film, film_frames
 from motion_backend.rendering.film_loop import moment, write_loop
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
 from motion_backend.rendering.film_set import FilmSet
-from motion_backend.rendering.film_shots import FilmShot, _fitted, _from_feet, _View, film_shots
+from motion_backend.rendering.film_shots import EYES, FilmShot, _from_feet, _standing, _View, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
 from motion_backend.rendering.rasterizer import Camera, orbit
@@ -63,6 +63,14 @@ def test_the_body_is_in_the_picture_all_the_time():
         for frame in range(shot.start, shot.stop):
             x, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(joints[frame]), (160, 90)), -1, 0)
             assert ((x > 0) & (x < 160) & (y > 0) & (y < 90)).mean() > 0.9, (shot, frame)
+
+
+def test_told_words_lie_on_no_foot_and_cameras_stand_as_high_as_eyes_do():
+    joints = acted().joint_positions().astype(np.float64)
+    for shot in (one for one in shots() if one.subject is Subject.BODY):
+        assert 0.8 < shot.camera.eye[1] <= EYES[-1] + 0.01
+        _, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(joints[shot.start : shot.stop]), (160, 90)), -1, 0)
+        assert y.max() <= 0.83 * 90, "two lines of words end above that"
 
 
 def test_of_two_sides_of_a_body_a_film_shows_the_one_with_the_home_and_the_body_stays_in_the_picture():
@@ -270,7 +278,7 @@ def test_a_camera_turned_aside_stands_where_it_stood_and_keeps_all_in_its_pictur
     yaw: float, wide: float, high: float
 ) -> None:
     points = np.array([[x, y, z] for x in (-wide, wide) for y in (0.0, high) for z in (-0.3, 0.3)])
-    middle = _fitted(yaw, 0.2, points, 16 / 9, 2.3)
+    middle = _standing(yaw, 1.4, points, 16 / 9, 2.3)
     for view in _View(0.0, middle, points).aside(16 / 9):
         assert view.camera.eye == middle.eye
         assert view.score < 0.0
