@@ -1,5 +1,6 @@
-"""What is done with the face: weeping, laughing, sighing, falling asleep, and whatever a story closes with. A film shows
-it from near and from before, and stays there.
+"""What is done with the face: weeping, laughing, sighing, falling asleep, and whatever a story closes with.
+
+A film shows it from near and from before, and stays there.
 """
 
 from __future__ import annotations

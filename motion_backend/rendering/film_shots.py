@@ -66,6 +66,8 @@ FAR: Final = 0.14
 """What a metre of distance counts: faces are seen from near."""
 REPEATED: Final = 1.6
 """What a jump cut counts."""
+LEFT_OUT: Final = 4.0
+"""The same where time is left out between: who was here is there, as if by magic."""
 REVERSED: Final = 3.0
 """What it counts to go on from the other side, where who went to the right goes to the left."""
 SIDE: Final = 0.25
@@ -78,6 +80,8 @@ WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
 """The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
 WATCHED: Final = 3.0
 """What it counts to see the face of who does not walk, in a shot of the whole,"""
+COMING: Final = 0.8
+"""What it counts that somebody who walks does not walk away,"""
 QUARTER, PROFILE, BEYOND = (0.8, 1.6), (1.3, 1.8), (2.0, 2.5)
 """from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, of who
 does, and of who does it to what stands before them."""
@@ -245,6 +249,7 @@ class _Director:
         behind = there is not None and there.kind is Kind.WINDOW
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
+        way = rotations.rotate(self.turns[frames, 0], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         front = self._front(framing, sight)
         before_it = front is not None or there is not None
@@ -261,6 +266,8 @@ class _Director:
                 score -= FAR * _distance(camera) + FROM_FEET * _from_feet(lying, -camera.axes[2])
                 if len(watched):
                     score += WATCHED * _is_faced(ahead, -camera.axes[2], widest)
+                else:
+                    score += COMING * _is_faced(way, -camera.axes[2], PROFILE)
                 if front is not None:
                     score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
@@ -333,7 +340,8 @@ class _Director:
         front = None if close.of_face else self._front(close, sight)
         tall = turns[:, 0 if close.of_face else INDEX["head"]]  # a head may hang between the knees of who sits
         upright = rotations.rotate(tall, np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
-        pitches, steep = CLOSE_PITCHES[0 if upright else 1], STEEP[0 if upright else 1]
+        pitches: Sequence[float] = CLOSE_PITCHES[0 if upright else 1]
+        steep = STEEP[0 if upright else 1]
         bowed = close.of_face and upright and ahead[:, 1].mean() < BOWED
         if bowed:  # who is before the trunk, and lower, sees most of it
             ahead = rotations.rotate(turns[:, 0], np.array([0.0, 0.0, 1.0])) * [1.0, 0.0, 1.0]
@@ -363,7 +371,8 @@ class _Director:
             return 0.0
         now, then = self._across(camera, frame), self._across(before.camera, before.stop - 1)
         turned = min(abs(now), abs(then)) > SIDE and now * then < 0
-        return REPEATED * are_alike(camera, before.camera) + REVERSED * turned
+        jump = LEFT_OUT if frame > before.stop else REPEATED
+        return jump * are_alike(camera, before.camera) + REVERSED * turned
 
     def _across(self, camera: Camera, frame: int) -> float:
         """How far to the right of a picture the body goes, or is turned if it does not go, -1 to 1."""

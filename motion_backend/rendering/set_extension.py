@@ -11,6 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from motion_backend.rendering.renderer import Solid
 from motion_backend.rotations import Array
@@ -19,6 +20,7 @@ from motion_backend.walls import Side
 if TYPE_CHECKING:
     from scene_graphs.home import Home
 
+Paint = Sequence[float] | NDArray[np.floating]
 FAR: Final = 6.0
 """Metres beyond a gap up to which all goes on."""
 LOWER: Final = 0.004
@@ -49,7 +51,7 @@ class SetExtension:
 
         found = (side for wall in home.walls if (side := Side.of(wall, home)) is not None)
         floor = [
-            Solid(mesh.vertices - np.float32([0.0, LOWER, 0.0]), mesh.faces, mesh.color, casts=False)
+            Solid(mesh.vertices - np.array([0.0, LOWER, 0.0], dtype=np.float32), mesh.faces, mesh.color, casts=False)
             for mesh in wide_floor_meshes(home, room, FAR)
         ]
         return SetExtension(home, room, tuple(side for side in found if side.room == room), tuple(floor))
@@ -59,7 +61,7 @@ class SetExtension:
         """Of the room (metres)."""
         return float(self.home.rooms[self.room].layout.height)
 
-    def beyond(self, gaps: Sequence[Side], paint: Sequence[float]) -> Iterator[Solid]:
+    def beyond(self, gaps: Sequence[Side], paint: Paint) -> Iterator[Solid]:
         """What goes on where some walls of the room are left away; what stands of it has a paint."""
         for solid in self.floor:
             middles = solid.vertices[solid.faces].mean(axis=1)[:, [0, 2]]
@@ -79,7 +81,8 @@ class SetExtension:
         for gap in gaps:
             along = (gap.end - gap.start) / np.linalg.norm(gap.end - gap.start)
             one, other = gap.start - FAR * along, gap.end + FAR * along
-            shapes.append(flat([one, other, other + FAR * gap.outward, one + FAR * gap.outward], self.height + LOWER))
+            out = FAR * gap.outward
+            shapes.append(flat(np.array([one, other, other + out, one + out]), self.height + LOWER))
         return Solid(*merge(shapes), CEILING, casts=False)
 
     def _goes_on(self, end: Array, gap: Side, gaps: Sequence[Side]) -> bool:
@@ -103,6 +106,6 @@ def _is_beyond(side: Side, points: Array) -> Array:
     return np.asarray((points - side.start) @ side.outward > -0.9)
 
 
-def _upright(start: Array, end: Array, height: float, paint: Sequence[float]) -> Solid:
+def _upright(start: Array, end: Array, height: float, paint: Paint) -> Solid:
     corners = np.array([(*point, y) for y in (0.0, height) for point in (start, end)])[:, [0, 2, 1]]
     return Solid(corners, np.array([[0, 1, 3], [0, 3, 2]]), paint, casts=False)

@@ -20,7 +20,7 @@ from motion_backend.formats.mp4 import write_mp4
 from motion_backend.motion import Motion, join
 from motion_backend.rendering import depth_buffer, film_kernel, surface_light
 from motion_backend.rendering.camera import SEEN
-from motion_backend.rendering.film_backdrop import Backdrop
+from motion_backend.rendering.film_backdrop import Backdrop, _lifted
 from motion_backend.rendering.film_cuts import LONGEST, SHORTEST, Framing, Subject
 from motion_backend.rendering.film_frames import compile_film, film_frames
 from motion_backend.rendering.film_loop import moment, write_loop
@@ -120,6 +120,14 @@ def test_a_body_put_into_a_still_picture_looks_as_if_all_had_been_drawn():
     off = np.abs(made - whole)
     assert off.mean() < 2.0
     assert (off > 40).mean() < 0.03
+
+
+def test_dark_colours_of_a_body_are_lifted_and_none_becomes_brighter_than_one_that_was_brighter():
+    grey = np.linspace(0.0, 1.0, 101)[:, None].repeat(3, axis=1)
+    lifted = _lifted(grey)[:, 0]
+    assert (np.diff(lifted) > 0).all()
+    assert lifted[5] > 1.3 * grey[5, 0]
+    assert np.abs(lifted[50:] - grey[50:, 0]).max() < 0.005
 
 
 def test_of_a_body_that_is_partly_behind_the_eye_the_rest_is_seen():
