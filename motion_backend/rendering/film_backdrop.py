@@ -17,8 +17,8 @@ from motion_backend.rendering.shadow_map import ShadowMap
 SHADES = 8192
 """Steps of linear light that become bytes; finer than a byte's at its darkest."""
 LIFTED, DARK = 0.7, 0.10
-"""By which share the darkest colours of a body are brighter in a film, and how bright those are by which it is a third of
-that: on a screen one would see no face in them."""
+"""By which share the darkest colours of a body are brighter in a film, and how bright those are whose share is a third
+of that: on a screen one would see no face in them."""
 NEAR = 0.1
 """Metres before the eye; of a body the faces that are nearer, or behind it, are not drawn."""
 

@@ -35,11 +35,10 @@ from motion_backend.skeleton import INDEX
 if TYPE_CHECKING:
     from scene_graphs.home import Home
 
-EYES: Final = (1.2, 1.5, 1.95)
-"""Metres that a camera stands high: at the eyes of who sits, of who stands, and over low furniture."""
-LEVEL: Final = (1.0, 0.12, 3.0)
-"""What it counts to stand higher than a person does, from how many radians from above on it counts to look down, and
-what each of those counts."""
+EYES: Final = (1.2, 1.45, 1.7)
+"""Metres that a camera stands high: at the eyes of who sits, of who stands, and of who looks over low furniture."""
+LEVEL: Final = (0.12, 3.0)
+"""From how many radians from above on it counts to look down, and what each of those counts."""
 CLOSE_PITCHES: Final = (0.06, 0.30), (0.06, 0.30, 0.60, 0.95)
 """The same from near, of who is upright, whose crown nobody wants to see, and of who lies."""
 FROM_BELOW, BOWED = (-0.10, 0.06, 0.24), -0.35
@@ -87,6 +86,10 @@ QUARTER, PROFILE, BEYOND = (0.8, 1.6), (1.3, 1.8), (2.0, 2.5)
 does, and of who does it to what stands before them."""
 HAND_HIDDEN: Final = 2.0
 """What it counts to have furniture before the hands that do something."""
+FEET, KNEES = ([INDEX[f"{side}_{name}"] for side in ("left", "right") for name in names]
+               for names in (("ankle", "foot"), ("knee",)))  # fmt: skip
+ROOTED: Final = 0.12
+"""Metres up to which hips and feet stay where they are: their picture ends at the knees."""
 EVERY: Final = 4
 """Frames between two at which it is asked how far a body goes."""
 ALONG: Final = 0.8
@@ -245,7 +248,7 @@ class _Director:
         entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
         there = self._counterpart(framing)
         openings = [one.corners for one in (entrance, there) if one is not None]
-        points = np.concatenate([self._reached(start, stop), *openings])
+        points = np.concatenate([self._reached(framing), *openings])
         behind = there is not None and there.kind is Kind.WINDOW
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
@@ -279,12 +282,20 @@ class _Director:
                 scored.append(_View(score, camera, points, tells))
         return _sorted(_frontal(scored, front))
 
-    def _reached(self, start: int, stop: int) -> Array:
-        """Where joints and the crown go in some frames, at the height of a jump too. (N, 3)."""
+    def _reached(self, framing: Framing) -> Array:
+        """Where joints and the crown go in some frames, at the height of a jump too, and what is in the hands; without
+        the feet of who stands or sits still and does something with their hands. (N, 3)."""
+        start, stop = framing.start, framing.stop
         frames = np.arange(start, stop, EVERY)
         high = start + int(self.joints[start:stop, INDEX["head"], 1].argmax())
         frames = np.unique([*frames.tolist(), high, stop - 1])
-        return np.concatenate([self.joints[frames].reshape(-1, 3), _crowns(self.joints[frames], self.turns[frames])])
+        joints, held = self.joints[frames], [prop_points(self.props, frame) for frame in frames[::EVERY].tolist()]
+        rooted = np.ptp(joints[:, [0, *FEET]], axis=0).max() < ROOTED
+        over_feet = joints[:, FEET, 1].max() < joints[:, 0, 1].min()  # of who does not lie
+        low = min((float(points[:, 1].min()) for points in held if len(points)), default=np.inf)
+        if framing.deed is not None and rooted and over_feet and low > joints[:, KNEES, 1].min():
+            joints = np.delete(joints, FEET, axis=1)
+        return np.concatenate([joints.reshape(-1, 3), _crowns(self.joints[frames], self.turns[frames]), *held])
 
     def _watched(self, frames: NDArray[np.int64], deed: Frames | None) -> NDArray[np.int64]:
         """Those of some frames in which nobody walks, or hands do what it is about."""
@@ -520,9 +531,9 @@ def _standing(yaw: float, eye: float, points: Array, aspect: float, nearest: flo
 
 
 def _down(camera: Camera) -> float:
-    """What it counts against a camera to stand high and to look down."""
-    high, free, steep = LEVEL
-    return high * (camera.eye[1] > EYES[1] + 0.25) + steep * max(-float(np.arcsin(camera.axes[2][1])) - free, 0.0)
+    """What it counts against a camera to look down."""
+    free, steep = LEVEL
+    return steep * max(-float(np.arcsin(camera.axes[2][1])) - free, 0.0)
 
 
 def _turned(camera: Camera, radians: float) -> Camera:

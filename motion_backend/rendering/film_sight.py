@@ -73,7 +73,7 @@ BEFORE: Final = 0.86
 """Up to which share of the way to the body something is in the foreground,"""
 LOW, TALL = 0.3, 0.8
 """from which height on (metres), and from which wholly: a rug is not, a bed hardly, a wardrobe is."""
-FOREGROUND: Final = 10.0
+FOREGROUND: Final = 14.0
 """What it counts to have nothing but foreground in the picture."""
 RING: Final = (1.15, 2.3)
 """From how many radii of a head on, and up to how many, what is behind it is looked at,"""
