@@ -16,8 +16,9 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import BodyState, History, Part
+from motion_backend.furniture_clearance import arms_aside
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.metrics.penetration import penetration
+from motion_backend.metrics.penetration import CLEARLY_IN, penetration
 from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Phase, PhaseKind, join
 from motion_backend.procedural.backend import ProceduralBackend
@@ -54,8 +55,10 @@ PASSES, BY = 0.2, 10
 """Metres from a place within which it is passed by, and frames in which that was just now."""
 BEYOND: Final = 20
 """Frames that are made beyond such a place, so that a heel comes down by it: a step has some 16."""
-DEEPER: Final = 0.02
-"""Metres by which a generator's body may be deeper in furniture than the procedural one."""
+EARLIER: Final = 3
+"""Steps that are tried for the last one of a stretch, from the farthest one back."""
+BESIDE: Final = 8
+"""Frames before and after it comes by in which the procedural body may be in furniture for a generator's to be."""
 CARRIAGE_S: Final = 0.5
 """Seconds in which a mood's bend of trunk and head comes and goes."""
 _BENT: Final = {"spine1": 1 / 3, "spine2": 1 / 3, "spine3": 1 / 3}
@@ -107,28 +110,26 @@ class WalkDriver:
         index, made = state.index, list[Motion]()
         style, why = style_of(part.action), unlike_people(part.action)
         least = 0
+        walk = _Walk.of(home, part, tuple(upcoming), state, style)
         for _ in range(MOST):
-            walk = _Walk(home, part, tuple(upcoming), state, style, *ruled(home, part, upcoming, state))
             stretch = None if why else plain_stretch(walk.ruled, self.generator.slowest, least)
             if not walk.ruled.completed or stretch is None:
                 why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
                 break
             start = walk.ruled.part(0, stretch[0])
             led = self._acted(walk, stretch[0], STARTS_AND_STOPS) if stretch[0] else None
-            history, motion, beyond = self._stretch(walk, stretch, led)
-            if len(motion) < LEAST and led is not None:
+            found = self._stretch(walk, stretch, led)
+            if found is None and led is not None:
                 led = by_rules(start, STARTS_AND_STOPS)
-                history, motion, beyond = self._stretch(walk, stretch, led)
-            if len(motion) < LEAST:
+                found = self._stretch(walk, stretch, led)
+            if found is None:
                 why = f"{self.generator.name} finds no room"
                 break
-            made += [led, motion] if led is not None else [motion]
-            state = replace(state, history=history.followed_by(motion))
-            if walk.is_over(motion):
-                return join(made), replace(_in_stride(state, walk, beyond), index=index + 1)
-            state, least, why = _in_stride(state, walk, walk.to_goal(beyond)), AGAIN, ""
+            made += [led, found.motion] if led is not None else [found.motion]
+            if found.onward is None:
+                return join(made), replace(found.state, index=index + 1)
+            walk, least, why = found.onward, AGAIN, ""
         else:
-            walk = _Walk(home, part, tuple(upcoming), state, style, *ruled(home, part, upcoming, state))
             why = STARTS_AND_STOPS
         if not len(walk.ruled) and not made:
             return walk.ruled, walk.after
@@ -157,10 +158,11 @@ class WalkDriver:
         beyond = walk.way[_nearest(walk.way, places[last, 0][[0, 2]]) + 1 :]
         return motion, _in_stride(replace(walk.after, history=walk.state.history.followed_by(motion)), walk, beyond)
 
-    def _stretch(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> tuple[History, Motion, Array]:
-        """What came before, the generator's frames, feet held and ending as a heel comes down, and the way (N, 2) left.
+    def _stretch(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> _Stretch | None:
+        """A stretch of a walk by the generator, feet held, that ends as a heel comes down; None where it finds no room.
 
-        `led` is what leads up to them. They end before the body would be in furniture, or beside its way.
+        `led` is what leads up to it. It ends before the body would be in furniture, or beside its way, and a step
+        earlier where the procedural body would come into furniture in the stride that it takes over.
         """
         skeleton, (start, stop), before = walk.ruled.skeleton, stretch, walk.state.history
         history = before.followed_by(led) if led is not None else before
@@ -181,12 +183,29 @@ class WalkDriver:
             skeleton=skeleton,
             actions=np.full(len(root) - len(past), walk.part.action.keyframe, dtype=np.int32),
         )
+        motion = arms_aside(motion, walk.part, scene_of(walk.home).obstacles)
         body = Kinematics.of(motion)
-        free = walk.free(body)
-        count = _steps_end(body.positions[:free], places[min(stop - start, len(places) - 1)]) + 1 if free else 0
-        motion = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
-        gone = _nearest(places[: stop - start + LATER], root[len(past) + count - 1, [0, 2]]) if count else 0
-        return history, motion, places[gone + 1 :]
+        end, best = places[min(stop - start, len(places) - 1)], None
+        for count in _steps_end(body.positions[: walk.free(body)], end)[:EARLIER]:
+            if count < LEAST:
+                break
+            taken = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
+            gone = _nearest(places[: stop - start + LATER], root[len(past) + count - 1, [0, 2]])
+            tried = walk.after_stretch(history, taken, places[gone + 1 :])
+            best = best or tried
+            if tried.onward is None or tried.onward.is_no_deeper(walk):
+                return tried
+        return best
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Frames of a generator, and how the walk goes on after them."""
+
+    motion: Motion
+    state: BodyState
+    onward: _Walk | None
+    """As the procedural body does what is left of it; None where it is over."""
 
 
 @dataclass(frozen=True)
@@ -202,6 +221,11 @@ class _Walk:
     ruled: Motion
     after: BodyState
     """What that left."""
+
+    @staticmethod
+    def of(home: Home, part: Part, upcoming: tuple[Part, ...], state: BodyState, style: Walk) -> _Walk:
+        """From a state."""
+        return _Walk(home, part, upcoming, state, style, *ruled(home, part, upcoming, state))
 
     @property
     def stride(self) -> Stride | None:
@@ -241,6 +265,25 @@ class _Walk:
         goal = np.asarray(self.part.goal, dtype=np.float64)
         return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
 
+    def after_stretch(self, history: History, motion: Motion, beyond: Array) -> _Stretch:
+        """How it goes on after a motion that ended as a heel came down, whose way is `beyond` (N, 2) then."""
+        state = replace(self.state, history=history.followed_by(motion))
+        if self.is_over(motion):
+            return _Stretch(motion, _in_stride(state, self, beyond), None)
+        state = _in_stride(state, self, self.to_goal(beyond))
+        return _Stretch(motion, state, _Walk.of(self.home, self.part, self.upcoming, state, self.style))
+
+    def is_no_deeper(self, than: _Walk) -> bool:
+        """Whether the procedural body comes into furniture no more than in another walk as it sets out."""
+        obstacles = scene_of(self.home).obstacles
+        own, other = (penetration(Kinematics.of(one), obstacles, None) for one in (self.begun, than.ruled))
+        return float(own.max(initial=0.0)) <= max(float(other.max(initial=0.0)), CLEARLY_IN)
+
+    @property
+    def begun(self) -> Motion:
+        """The first step of what the procedural body did."""
+        return self.ruled.part(0, min(BEYOND, len(self.ruled)))
+
     def hurry(self, stretch: tuple[int, int], pace: float | None) -> float:
         """How much faster somebody goes a stretch who usually walks at `pace`, in the mood that the walk is in."""
         if pace is None:
@@ -252,11 +295,14 @@ class _Walk:
 
     def free(self, body: Kinematics) -> int:
         """How many of a body's frames come before it is deeper in furniture than it may be, or has lost its way."""
+        from scipy.ndimage import maximum_filter1d
+
         obstacles = scene_of(self.home).obstacles
-        most = float(penetration(Kinematics.of(self.ruled), obstacles, None).max()) + DEEPER
+        ruled = maximum_filter1d(penetration(Kinematics.of(self.ruled), obstacles, None), 2 * BESIDE + 1)
         places = body.positions[:, 0][:, [0, 2]]
-        off = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2)).min(axis=1)
-        lost = (penetration(body, obstacles, None) > most) | (off > OFF)
+        away = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2))
+        most = np.maximum(ruled[np.minimum(away.argmin(axis=1), len(ruled) - 1)], CLEARLY_IN)
+        lost = (penetration(body, obstacles, None) > most) | (away.min(axis=1) > OFF)
         return int(np.argmax(lost)) if lost.any() else len(lost)
 
 
@@ -383,12 +429,13 @@ def in_mood(made: Frames, action: Action, fixed: int) -> Frames:
     return Frames(made.root, local)
 
 
-def _steps_end(positions: Array, end: Array) -> int:
-    """Of the frames (T, 22, 3) in which a heel comes down the one that is nearest to a place (2,)."""
+def _steps_end(positions: Array, end: Array) -> list[int]:
+    """Counts of frames (T, 22, 3) up to where heels come down: first the nearest to a place (2,), then earlier ones."""
     landing = strides_landing(positions)
     if not len(landing):
-        return len(positions) - 1
-    return int(landing[_nearest(positions[landing, 0][:, [0, 2]], end)])
+        return [len(positions)] if len(positions) else []
+    last = _nearest(positions[landing, 0][:, [0, 2]], end)
+    return [int(at) + 1 for at in landing[last::-1]]
 
 
 def _landing_by(positions: Array, goal: Array) -> int | None:

@@ -29,15 +29,17 @@ from motion_backend.diffusion.goal_cleanup import (
 from motion_backend.diffusion.guidance import HOLD, Guide, along, both, posed, reaching, towards
 from motion_backend.diffusion.learned_walker import known_poses, spline
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, to_features
-from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond
+from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond, refuse_unseen
 from motion_backend.diffusion.planned_passages import PlannedPassage
 from motion_backend.diffusion.rollout import Rollout, conditions
 from motion_backend.diffusion.sampler import Sampler, Scale
 from motion_backend.diffusion.windows import THERE
+from motion_backend.furniture_clearance import arms_aside
 from motion_backend.metrics.contact_error import THRESHOLDS
 from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Motion, Note, Phase, Skill, join
 from motion_backend.rotations import Array
+from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX, Skeleton
 from motion_backend.stride_takeover import ARMS_HALF_LIFE, HALF_LIFE, joined
 from motion_backend.walk_driver import by_rules
@@ -126,6 +128,7 @@ class PlanFollower:
 
         RefusedError where none can.
         """
+        refuse_unseen(passage)
         why, best = RefusedError(""), list[tuple[int, Motion, float]]()
         for number in range(TRIES):
             try:
@@ -133,6 +136,8 @@ class PlanFollower:
                 frames, laid = _laid(body.through(passage, [*seed, number]), passage, arms, number)
                 frames, away = body.brought(passage, frames)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
+                if passage.is_on_foot:
+                    motion = arms_aside(motion, passage.part, scene_of(passage.home).obstacles)
                 deeper = check(motion, passage, past)
                 best = sorted([*best, (deeper, motion, away)], key=lambda one: one[0])
                 if not deeper:

@@ -66,6 +66,11 @@ class PlannedPassage:
         return self.kind in SEATS
 
     @property
+    def is_on_foot(self) -> bool:
+        """Whether it is standing or locomotion."""
+        return self.is_periodic or self.phase is PhaseKind.STAND
+
+    @property
     def caption(self) -> str:
         """What it is called."""
         action = self.part.action

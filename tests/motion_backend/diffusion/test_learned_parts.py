@@ -20,7 +20,7 @@ from motion_backend.diffusion.passage_checks import RefusedError, check
 from motion_backend.diffusion.planned_passages import PlannedPassage
 from motion_backend.diffusion.windows import settled
 from motion_backend.director import Director, shares
-from motion_backend.motion import Action, Character, Motion, PhaseKind, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, build_skeleton
@@ -159,6 +159,18 @@ def stood_for(count: int) -> tuple[Array, Array]:
     history = ProceduralBackend().begin(small_home(), Character(), 3).history
     root, local = history.root_positions[-1:], history.local_rotations[-1:]
     return np.repeat(root, count, axis=0), np.repeat(local, count, axis=0)
+
+
+@pytest.mark.parametrize(
+    ("caption", "why"),
+    [("excited walk", "hops"), ("run with open arms", "flies"), ("skip happily", "hops"), ("walk on tiptoe", "toes")],
+)
+def test_what_ten_frames_a_second_do_not_hold_is_left_to_the_rules(caption: str, why: str) -> None:
+    walks = Action(Skill.LOCO, caption, Emotion.HAPPY, goal=(4.6, 1.0))
+    ((motion, _),) = acted(walks)
+    assert motion.completed
+    assert shares(motion) == {"procedural": 1.0}
+    assert all(why in phase.fallback for phase in motion.phases)
 
 
 def test_what_jumps_is_refused() -> None:
