@@ -51,7 +51,7 @@ LATER: Final = 12
 """Frames of its way beyond the stretch that a generator is to walk, in which its last step may end."""
 OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
-PASSES, BY = 0.2, 10
+PASSES, BY = 0.25, 10
 """Metres from a place within which it is passed by, and frames in which that was just now."""
 BEYOND: Final = 20
 """Frames that are made beyond such a place, so that a heel comes down by it: a step has some 16."""
@@ -441,7 +441,10 @@ def _steps_end(positions: Array, end: Array) -> list[int]:
 def _landing_by(positions: Array, goal: Array) -> int | None:
     """The last frame of (T, 22, 3) in which a heel comes down as the body has just come by a place (2,)."""
     near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < PASSES
-    landing = [int(at) for at in strides_landing(positions) if near[max(at - BY, 0) : at + 1].any()]
+    begun = max(int(np.argmax(near)) - BEYOND, 0)
+    # Of strides about there alone: before a bend they are shorter.
+    landing = [begun + int(at) for at in strides_landing(positions[begun:])]
+    landing = [at for at in landing if near[max(at - BY, 0) : at + 1].any()]
     return landing[-1] if landing else None
 
 
