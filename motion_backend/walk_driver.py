@@ -7,7 +7,7 @@ to the place, the stop and the turn that the part asks for. Every phase says who
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, Protocol
@@ -28,8 +28,8 @@ from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import Walk, style_of, walk_style
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import INDEX
-from motion_backend.stride_takeover import ARMS_HALF_LIFE, joined, stride_of, strides_landing
+from motion_backend.skeleton import INDEX, build_skeleton
+from motion_backend.stride_takeover import ARMS_HALF_LIFE, ONSET, joined, stride_of, strides_landing
 from motion_backend.walk_generator import Frames, WalkGenerator, Way, windows, yaw_of
 from scene_graphs.home import Home
 
@@ -55,6 +55,9 @@ PASSES, BY = 0.25, 10
 """Metres from a place within which it is passed by, and frames in which that was just now."""
 BEYOND: Final = 20
 """Frames that are made beyond such a place, so that a heel comes down by it: a step has some 16."""
+WAITS, EVERY, GENTLE = 12, 3, 0.8
+"""Frames that a generator may wait to take over, how often it is tried in them, and metres a second from frame to frame
+by which a joint changes its speed in a stride: who takes over in another phase of it flings a foot."""
 EARLIER: Final = 3
 """Steps that are tried for the last one of a stretch, from the farthest one back."""
 BESIDE: Final = 8
@@ -116,16 +119,16 @@ class WalkDriver:
             if not walk.ruled.completed or stretch is None:
                 why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
                 break
-            start = walk.ruled.part(0, stretch[0])
-            led = self._acted(walk, stretch[0], STARTS_AND_STOPS) if stretch[0] else None
+            lead = min(stretch[0] + WAITS, stretch[1] - SHORTEST) if stretch[0] else 0
+            led = self._acted(walk, lead, STARTS_AND_STOPS) if lead else None
             found = self._stretch(walk, stretch, led)
             if found is None and led is not None:
-                led = by_rules(start, STARTS_AND_STOPS)
+                led = by_rules(walk.ruled.part(0, lead), STARTS_AND_STOPS)
                 found = self._stretch(walk, stretch, led)
             if found is None:
                 why = f"{self.generator.name} finds no room"
                 break
-            made += [led, found.motion] if led is not None else [found.motion]
+            made += [led.part(0, found.start), found.motion] if led is not None else [found.motion]
             if found.onward is None:
                 return join(made), replace(found.state, index=index + 1)
             walk, least, why = found.onward, AGAIN, ""
@@ -164,18 +167,13 @@ class WalkDriver:
         `led` is what leads up to it. It ends before the body would be in furniture, or beside its way, and a step
         earlier where the procedural body would come into furniture in the stride that it takes over.
         """
-        skeleton, (start, stop), before = walk.ruled.skeleton, stretch, walk.state.history
-        history = before.followed_by(led) if led is not None else before
-        scale, step = skeleton.scale, walk.hurry(stretch, self.generator.pace)
-        places = _hastened(walk.way[start:], step)
-        stop = start + max(int((stop - start) / step), 1)
-        past = Frames(history.root_positions / scale, history.local_rotations)
-        rng = np.random.default_rng([walk.state.seed, walk.state.index, len(history), start])
-        made, way = past, Way(places[: stop - start + LATER] / scale)
-        for found in windows(self.generator.begin(past, rng), past, way):
+        set_out = self._set_out(walk, stretch, led)
+        skeleton, past, places = walk.ruled.skeleton, set_out.past, set_out.places
+        made = past.then(set_out.first)
+        for found in set_out.windows:
             made = made.then(found)
         made = in_mood(made, walk.part.action, len(past))
-        root, local, contacts = held(made.root * scale, made.local, skeleton, len(past))
+        root, local, contacts = held(made.root * skeleton.scale, made.local, skeleton, len(past))
         motion = Motion(
             root_positions=root[len(past) :].astype(np.float32),
             local_rotations=local[len(past) :].astype(np.float32),
@@ -185,23 +183,66 @@ class WalkDriver:
         )
         motion = arms_aside(motion, walk.part, scene_of(walk.home).obstacles)
         body = Kinematics.of(motion)
-        end, best = places[min(stop - start, len(places) - 1)], None
+        end, best = places[min(set_out.frames, len(places) - 1)], None
         for count in _steps_end(body.positions[: walk.free(body)], end)[:EARLIER]:
             if count < LEAST:
                 break
             taken = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
-            gone = _nearest(places[: stop - start + LATER], root[len(past) + count - 1, [0, 2]])
-            tried = walk.after_stretch(history, taken, places[gone + 1 :])
+            gone = _nearest(places[: set_out.frames + LATER], root[len(past) + count - 1, [0, 2]])
+            tried = walk.after_stretch(set_out, taken, places[gone + 1 :])
             best = best or tried
             if tried.onward is None or tried.onward.is_no_deeper(walk):
                 return tried
         return best
+
+    def _set_out(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> _SetOut:
+        """The generator's first window of a stretch: after as much of what leads up to it as lets it fling no joint."""
+        before, scale, found = walk.state.history, walk.ruled.skeleton.scale, list[_SetOut]()
+        starts = range(stretch[0], len(led) + 1, EVERY) if led is not None else [stretch[0]]
+        step = walk.hurry(stretch, self.generator.pace)
+        for start in starts:
+            history = before.followed_by(led.part(0, start)) if led is not None else before
+            places, frames = _hastened(walk.way[start:], step), max(int((stretch[1] - start) / step), 1)
+            past = Frames(history.root_positions / scale, history.local_rotations)
+            rng = np.random.default_rng([walk.state.seed, walk.state.index, len(history), start])
+            ahead = windows(self.generator.begin(past, rng), past, Way(places[: frames + LATER] / scale))
+            found.append(_SetOut(start, frames, history, past, places, next(ahead), ahead))
+            if found[-1].flung < GENTLE:
+                break
+        return min(found, key=lambda one: one.flung)
+
+
+@dataclass(frozen=True)
+class _SetOut:
+    """A generator that has taken over a body."""
+
+    start: int
+    """The frame of the walk in which it does."""
+    frames: int
+    """For which it is to walk."""
+    history: History
+    past: Frames
+    places: Array
+    """Its way, one place a frame. (N, 2)."""
+    first: Frames
+    """Its first window."""
+    windows: Iterator[Frames]
+    """Those after that."""
+
+    @cached_property
+    def flung(self) -> float:
+        """By how many metres a second the fastest joint changes its speed from frame to frame as it takes over."""
+        over = self.past[-2:].then(self.first[:ONSET])
+        places = build_skeleton().forward_kinematics(over.root, over.local)[0].astype(np.float64)
+        return float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max(initial=0.0)) * FPS
 
 
 @dataclass(frozen=True)
 class _Stretch:
     """Frames of a generator, and how the walk goes on after them."""
 
+    start: int
+    """The frame of the walk in which they begin."""
     motion: Motion
     state: BodyState
     onward: _Walk | None
@@ -265,13 +306,13 @@ class _Walk:
         goal = np.asarray(self.part.goal, dtype=np.float64)
         return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
 
-    def after_stretch(self, history: History, motion: Motion, beyond: Array) -> _Stretch:
+    def after_stretch(self, set_out: _SetOut, motion: Motion, beyond: Array) -> _Stretch:
         """How it goes on after a motion that ended as a heel came down, whose way is `beyond` (N, 2) then."""
-        state = replace(self.state, history=history.followed_by(motion))
+        state = replace(self.state, history=set_out.history.followed_by(motion))
         if self.is_over(motion):
-            return _Stretch(motion, _in_stride(state, self, beyond), None)
+            return _Stretch(set_out.start, motion, _in_stride(state, self, beyond), None)
         state = _in_stride(state, self, self.to_goal(beyond))
-        return _Stretch(motion, state, _Walk.of(self.home, self.part, self.upcoming, state, self.style))
+        return _Stretch(set_out.start, motion, state, _Walk.of(self.home, self.part, self.upcoming, state, self.style))
 
     def is_no_deeper(self, than: _Walk) -> bool:
         """Whether the procedural body comes into furniture no more than in another walk as it sets out."""
