@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from motion_backend import rotations
-from motion_backend.backend_protocol import Part
+from motion_backend.backend_protocol import Part, PartKind
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.inverse_kinematics import arm_rotations
 from motion_backend.metrics.joint_trajectories import Kinematics
@@ -32,14 +32,16 @@ IN: Final = 0.005
 
 
 def arms_aside(motion: Motion, part: Part, obstacles: Obstacles) -> Motion:
-    """The motion of somebody who stands or walks, with his arms out of furniture where they can get out of it."""
+    """The motion of somebody who stands, walks or sits down, with his arms out of furniture where they can get out."""
     deep = penetration(Kinematics.of(motion), obstacles, part.action) > IN
     if not deep.any():
         return motion
     skeleton = motion.skeleton
     root, local = motion.root_positions.astype(np.float64), motion.local_rotations.astype(np.float64)
     pose = poses_of(root, local, motion.contacts.astype(np.float64), skeleton)
-    around = Around(part, Posture.STANDING, None, obstacles.solid())
+    seat = part.action.spot if part.kind is PartKind.SIT else None
+    posture = Posture.STANDING if seat is None else Posture.SEATED
+    around = Around(part, posture, None if seat is None else seat.object_id, obstacles.solid())
     turned = _turned(local, pose, arms_out(pose, around, skeleton, deep), skeleton)
     return replace(motion, local_rotations=rotations.continuous(turned).astype(np.float32))
 

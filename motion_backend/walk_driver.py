@@ -60,8 +60,6 @@ WAITS, EVERY, GENTLE = 12, 3, 0.8
 by which a joint changes its speed in a stride: who takes over in another phase of it flings a foot."""
 EARLIER: Final = 3
 """Steps that are tried for the last one of a stretch, from the farthest one back."""
-BESIDE: Final = 8
-"""Frames before and after it comes by in which the procedural body may be in furniture for a generator's to be."""
 CARRIAGE_S: Final = 0.5
 """Seconds in which a mood's bend of trunk and head comes and goes."""
 _BENT: Final = {"spine1": 1 / 3, "spine2": 1 / 3, "spine3": 1 / 3}
@@ -335,15 +333,11 @@ class _Walk:
         return float(np.clip(mood * pace / max(planned, SLOWEST), *HURRY))
 
     def free(self, body: Kinematics) -> int:
-        """How many of a body's frames come before it is deeper in furniture than it may be, or has lost its way."""
-        from scipy.ndimage import maximum_filter1d
-
+        """How many of a body's frames come before it is clearly in furniture, or has lost its way."""
         obstacles = scene_of(self.home).obstacles
-        ruled = maximum_filter1d(penetration(Kinematics.of(self.ruled), obstacles, None), 2 * BESIDE + 1)
         places = body.positions[:, 0][:, [0, 2]]
-        away = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2))
-        most = np.maximum(ruled[np.minimum(away.argmin(axis=1), len(ruled) - 1)], CLEARLY_IN)
-        lost = (penetration(body, obstacles, None) > most) | (away.min(axis=1) > OFF)
+        off = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2)).min(axis=1)
+        lost = (penetration(body, obstacles, None) > CLEARLY_IN) | (off > OFF)
         return int(np.argmax(lost)) if lost.any() else len(lost)
 
 

@@ -136,7 +136,7 @@ class PlanFollower:
                 frames, laid = _laid(body.through(passage, [*seed, number]), passage, arms, number)
                 frames, away = body.brought(passage, frames)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
-                if passage.is_on_foot:
+                if passage.is_free:
                     motion = arms_aside(motion, passage.part, scene_of(passage.home).obstacles)
                 deeper = check(motion, passage, past)
                 best = sorted([*best, (deeper, motion, away)], key=lambda one: one[0])

@@ -66,9 +66,9 @@ class PlannedPassage:
         return self.kind in SEATS
 
     @property
-    def is_on_foot(self) -> bool:
-        """Whether it is standing or locomotion."""
-        return self.is_periodic or self.phase is PhaseKind.STAND
+    def is_free(self) -> bool:
+        """Whether arms are in nothing on purpose: in locomotion, standing and sitting down."""
+        return self.is_periodic or (self.part.kind is PartKind.SIT and not self.since)
 
     @property
     def caption(self) -> str:

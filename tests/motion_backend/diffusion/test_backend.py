@@ -202,3 +202,12 @@ def test_a_stretch_ends_a_step_earlier_where_the_rules_would_come_into_furniture
         ends.append(stretches)
     assert ends[0][0] == ends[1][0]
     assert 8 < ends[1][0] - ends[1][1] < 30
+
+
+def test_a_walk_keeps_to_a_bending_way() -> None:
+    past = standing_at_the_origin()
+    turned = np.arange(360)[:, None] / 30 / 2.5
+    way = Way(past.root[-1, [0, 2]] + 2.5 * np.hstack([1 - np.cos(turned), np.sin(turned)]))
+    made = follow(LearnedGait(walking(), gait=4).begin(past, np.random.default_rng(4)), past, way)
+    away = np.linalg.norm(made.root[90:, None, [0, 2]] - way.places, axis=2).min(axis=1)
+    assert np.quantile(away, 0.95) < 0.13

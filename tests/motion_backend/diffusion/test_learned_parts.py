@@ -24,7 +24,7 @@ from motion_backend.motion import Action, Character, Emotion, Motion, PhaseKind,
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, build_skeleton
-from motion_backend.walk_generator import Frames
+from motion_backend.walk_generator import LOOK, Frames
 
 
 def sits() -> Action:
@@ -196,3 +196,13 @@ def moved(root: Array, local: Array) -> Motion:
 
 def acted_part() -> Part:
     return Part(PartKind.HOLD, sits())
+
+
+def test_who_sits_down_jumps_nowhere_between_windows() -> None:
+    (seated, _), _ = sat()
+    phase = next(phase for phase in seated.phases if phase.kind is PhaseKind.SITDOWN)
+    assert phase.backend == "diffusion"
+    wrists = seated.joint_positions()[phase.start : phase.stop, [INDEX["left_wrist"], INDEX["right_wrist"]]]
+    changes = np.linalg.norm(np.diff(wrists.astype(np.float64), 2, axis=0), axis=-1).max(axis=1) * seated.fps
+    border = slice(LOOK - 3, LOOK + 4)
+    assert changes[border].max() < 1.0
