@@ -313,15 +313,10 @@ class _Walk:
         return _Stretch(set_out.start, motion, state, _Walk.of(self.home, self.part, self.upcoming, state, self.style))
 
     def is_no_deeper(self, than: _Walk) -> bool:
-        """Whether the procedural body comes into furniture no more than in another walk as it sets out."""
+        """Whether the procedural body comes into furniture no more than in another walk."""
         obstacles = scene_of(self.home).obstacles
-        own, other = (penetration(Kinematics.of(one), obstacles, None) for one in (self.begun, than.ruled))
+        own, other = (penetration(Kinematics.of(one.ruled), obstacles, None) for one in (self, than))
         return float(own.max(initial=0.0)) <= max(float(other.max(initial=0.0)), CLEARLY_IN)
-
-    @property
-    def begun(self) -> Motion:
-        """The first step of what the procedural body did."""
-        return self.ruled.part(0, min(BEYOND, len(self.ruled)))
 
     def hurry(self, stretch: tuple[int, int], pace: float | None) -> float:
         """How much faster somebody goes a stretch who usually walks at `pace`, in the mood that the walk is in."""
