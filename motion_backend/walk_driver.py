@@ -58,8 +58,8 @@ BEYOND: Final = 20
 WAITS, EVERY, GENTLE = 12, 3, 0.8
 """Frames that a generator may wait to take over, how often it is tried in them, and metres a second from frame to frame
 by which a joint changes its speed in a stride: who takes over in another phase of it flings a foot."""
-EARLIER: Final = 3
-"""Steps that are tried for the last one of a stretch, from the farthest one back."""
+EARLIER: Final = 5
+"""Steps that are tried for the last one of a stretch, from the farthest one back, while the rest is in furniture."""
 CARRIAGE_S: Final = 0.5
 """Seconds in which a mood's bend of trunk and head comes and goes."""
 _BENT: Final = {"spine1": 1 / 3, "spine2": 1 / 3, "spine3": 1 / 3}
@@ -181,17 +181,16 @@ class WalkDriver:
         )
         motion = arms_aside(motion, walk.part, scene_of(walk.home).obstacles)
         body = Kinematics.of(motion)
-        end, best = places[min(set_out.frames, len(places) - 1)], None
+        end, found = places[min(set_out.frames, len(places) - 1)], list[_Stretch]()
         for count in _steps_end(body.positions[: walk.free(body)], end)[:EARLIER]:
             if count < LEAST:
                 break
             taken = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
             gone = _nearest(places[: set_out.frames + LATER], root[len(past) + count - 1, [0, 2]])
-            tried = walk.after_stretch(set_out, taken, places[gone + 1 :])
-            best = best or tried
-            if tried.onward is None or tried.onward.is_no_deeper(walk):
-                return tried
-        return best
+            found.append(walk.after_stretch(set_out, taken, places[gone + 1 :]))
+            if found[-1].deep <= max(walk.deep, CLEARLY_IN):
+                break
+        return min(found, key=lambda one: max(one.deep, CLEARLY_IN), default=None)
 
     def _set_out(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> _SetOut:
         """The generator's first window of a stretch: after as much of what leads up to it as lets it fling no joint."""
@@ -245,6 +244,11 @@ class _Stretch:
     state: BodyState
     onward: _Walk | None
     """As the procedural body does what is left of it; None where it is over."""
+
+    @property
+    def deep(self) -> float:
+        """How deep the procedural body is in furniture then (metres)."""
+        return 0.0 if self.onward is None else self.onward.deep
 
 
 @dataclass(frozen=True)
@@ -312,11 +316,10 @@ class _Walk:
         state = _in_stride(state, self, self.to_goal(beyond))
         return _Stretch(set_out.start, motion, state, _Walk.of(self.home, self.part, self.upcoming, state, self.style))
 
-    def is_no_deeper(self, than: _Walk) -> bool:
-        """Whether the procedural body comes into furniture no more than in another walk."""
-        obstacles = scene_of(self.home).obstacles
-        own, other = (penetration(Kinematics.of(one.ruled), obstacles, None) for one in (self, than))
-        return float(own.max(initial=0.0)) <= max(float(other.max(initial=0.0)), CLEARLY_IN)
+    @cached_property
+    def deep(self) -> float:
+        """How deep the procedural body is in furniture (metres)."""
+        return float(penetration(Kinematics.of(self.ruled), scene_of(self.home).obstacles, None).max(initial=0.0))
 
     def hurry(self, stretch: tuple[int, int], pace: float | None) -> float:
         """How much faster somebody goes a stretch who usually walks at `pace`, in the mood that the walk is in."""

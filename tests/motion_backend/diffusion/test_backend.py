@@ -186,9 +186,9 @@ def test_a_stretch_ends_a_step_earlier_where_the_rules_would_come_into_furniture
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     ends = []
-    for answer in (True, False):
-        answers = iter([answer])
-        monkeypatch.setattr(walk_driver._Walk, "is_no_deeper", lambda *_, answers=answers: next(answers, True))
+    for deep in (0.0, 0.1):
+        depths = iter([deep])
+        monkeypatch.setattr(walk_driver._Stretch, "deep", property(lambda _, depths=depths: next(depths, 0.0)))
         stretches = list[int]()
         after = walk_driver._Walk.after_stretch
 
