@@ -24,6 +24,21 @@ Does = Literal["open", "close", "into", "on", "off"]
 """What is done to a piece: opened, shut, opened for as long as a hand is at it, switched on or off."""
 
 
+Reacts = Literal["start", "notice", "search"]
+"""How a body takes what happens: it starts and looks there, only looks there, or looks about and finds nobody."""
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """What a body does at something that happens, in whatever posture it is, before or after what it does itself."""
+
+    how: Reacts
+    at: str = ""
+    """Where that is: "door", "window" or a piece of furniture; empty: whatever door is nearest."""
+    after: bool = False
+    """Whether it happens once the action is done; otherwise before it begins."""
+
+
 class Skill(StrEnum):
     """The keyframe skills of SIMS 3.4, with standing up from a seat told apart as in its tables."""
 
@@ -116,6 +131,8 @@ class Phase:
     """Who made it; empty where nobody knows."""
     fallback: str = ""
     """Why another backend than the one asked for made it; empty where it was that one."""
+    reacts: Reacts | Literal[""] = ""
+    """How something that happens is taken in it; empty where nothing is."""
 
 
 @dataclass(frozen=True)
@@ -262,6 +279,8 @@ class Action:
     begins: tuple[float, float, float] | None = None
     """Where the body stands and looks, [x, z, yaw], before the first frame, if the words say: at the door that it has
     come in by. So only of the first action."""
+    reacts: tuple[Reaction, ...] = ()
+    """What happens besides, and is reacted to before it or after it."""
     handle: Handle | None = None
     """What the hand takes along; of who leaves the home, that of the door which is opened on the way."""
     lacks: str = ""

@@ -219,17 +219,20 @@ def around(
 ) -> list[Solid]:
     """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room:
     of a wall the foot is left, and what stands tall against it goes with it, unless the body is at that."""
-    target = np.asarray(camera.target)
     shown = []
-    for prop in props:
-        gap = np.maximum(np.maximum(prop.low - target, target - prop.high), 0.0)
-        if np.hypot(gap[0], gap[2]) > reach:
-            continue
+    for prop in within_reach(props, camera, reach):
         if not prop.stands_before(camera, points, room):
             shown.append(prop.solid)
         elif prop.stump is not None:
             shown.append(prop.stump)
     return shown
+
+
+def within_reach(props: Sequence[Prop], camera: Camera, reach: float) -> list[Prop]:
+    """What is, at least in part, no farther from a camera's target."""
+    target = np.asarray(camera.target)
+    gaps = (np.maximum(np.maximum(prop.low - target, target - prop.high), 0.0) for prop in props)
+    return [prop for prop, gap in zip(props, gaps, strict=True) if np.hypot(gap[0], gap[2]) <= reach]
 
 
 def save_png(picture: NDArray[np.uint8], path: Path | str) -> Path:

@@ -13,8 +13,9 @@ from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
-from motion_backend.motion import RISINGS, Action, Does, Emotion, Handle, Posture, Skill, moment
+from motion_backend.motion import RISINGS, Action, Does, Emotion, Handle, Posture, Reaction, Skill, moment
 from motion_backend.procedural.lie.lie_pose import place_to_lie
+from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_captions import handling_of
 from motion_backend.procedural.touch.hand_contacts import suits, to_knock_on
@@ -30,7 +31,7 @@ from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
 from planner_service.grounding.walk_direction import in_front
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
-from planner_service.scripts.script import Keyframe
+from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
 from planner_service.themes.opening_words import Kind, comes_in, goes_out, goes_to_window, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
@@ -58,9 +59,16 @@ def stays(caption: str) -> float:
     return walk_style(Emotion.NEUTRAL, caption).stays
 
 
+def held(skill: Skill, caption: str) -> float:
+    """For how many seconds what is done at a piece goes on, or lying on it."""
+    return max(HOLDS[skill], lie_style(Emotion.NEUTRAL, caption).stays if skill is Skill.LIEDOWN else 0.0)
+
+
 NEEDS = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}
 HOLDS = {Skill.SITDOWN: 2.5, Skill.LIEDOWN: 3.0, Skill.TOUCH: 1.4}
 """Seconds a reached pose is held."""
+RESTS_BEFORE = 1.0
+"""Seconds of rest before what a story begins with happens."""
 LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 STANDS_ON_FLOOR = 0.3
@@ -142,7 +150,15 @@ def act(
     hands = Hands()
     acted = [hands.follow(one, done_in(keyframes[one.keyframe].caption)) for one in walked]
     named = [replace(one, holds=keyframes[one.keyframe].held or one.holds) for one in acted]
+    named = [_reacting(one, keyframes[one.keyframe]) for one in named]
     return tuple(lingering(one, said[one.keyframe] if said else "") for one in named)
+
+
+def _reacting(action: Action, keyframe: Keyframe) -> Action:
+    """An action with what happens before it or after it: who only rests there at first does not for long."""
+    rows = keyframe.reacts if isinstance(keyframe, PlannedKeyframe) else ()
+    hold = RESTS_BEFORE if rows and action.already else action.hold
+    return replace(action, hold=hold, reacts=tuple(Reaction(row.how, row.at, row.after) for row in rows))
 
 
 class _Stage:
@@ -192,7 +208,7 @@ class _Stage:
                 self.resting = spot
             self.on = None if keyframe.skill is Skill.TOUCH else spot
             self.at, self.walks_on = spot.standing, False
-            hold, already = HOLDS[keyframe.skill], getattr(keyframe, "already", False)
+            hold, already = held(keyframe.skill, keyframe.caption), getattr(keyframe, "already", False)
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=hold, already=already)
         self.on = None
         self.walks_on |= keyframe.skill is Skill.LOCO
@@ -569,7 +585,8 @@ def height_of(caption: str) -> str:
 def action_to_dict(action: Action) -> dict[str, Any]:
     """Plain values of an action for story.json."""
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    for name in ("lacks", "begins", "by", "handle"):
+    plain["reacts"] = [vars(one) for one in action.reacts]
+    for name in ("lacks", "begins", "by", "handle", "reacts"):
         if not plain[name]:
             del plain[name]
     if action.handle is not None:

@@ -68,7 +68,7 @@ def reach(body: Body, part: Part) -> None:
         body.note("no room to kneel: squats")
     asked = _HEIGHT.search(action.caption)
     if asked and asked[0].lower() != spot.height:
-        body.note(f"nothing at {asked[0].lower()} height: {spot.height}")
+        body.note(f"nothing is there at {asked[0].lower()} height: it is done at {spot.height} height")
     elif asked and spot.height == "high" and spot.point[1] < OVERHEAD * body.skeleton.scale:
         body.note("nothing overhead: no stretch")
     spot, prone = knelt or spot, knelt is not None
