@@ -57,8 +57,8 @@ class FilmSet:
         some = joints[::STEP].reshape(-1, 3)
         within = self.home.on_floor(some[:, [0, 2]])
         places = some[within] if within.any() else some
-        room = self._room_of(joints[len(joints) // 2])
-        used = {self._room_of(pose) for pose in joints[::STEP]}
+        rooms = [self._room_of(pose) for pose in (joints[len(joints) // 2], *joints[::STEP])]
+        room, used = next((one for one in rooms if one is not None), None), {*rooms}
         near = within_reach(self.props, camera, REACH)
         left_away = [prop.stands_before(camera, places, room) for prop in near]
         shown = [prop for prop, gone in zip(near, left_away, strict=True) if not gone]
