@@ -1,8 +1,8 @@
 """How far the zero-moment point of a body lies outside its planted soles, while it stands or walks and while it rises.
 
 Judged are frames in which soles alone carry: not before a seat is left, not while sitting, lying, kneeling or bearing
-on both hands, and not in the air. Recorded people are not at 0 either: the body counts as one mass, and soles are judged
-by their labels.
+on both hands, and not in the air. Recorded people are not at 0 either: the body counts as one mass, and soles are
+judged by their labels.
 """
 
 from __future__ import annotations
