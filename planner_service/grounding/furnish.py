@@ -270,8 +270,8 @@ Chosen = dict[str, tuple[Layout, RoomMatch]]
 def _retrieved(
     merged: dict[str, FurnitureGraph], index: LayoutIndex, seed: int, looked_out_of: frozenset[str]
 ) -> Chosen:
-    """One of the nearest rooms of the library for every room type; of those that somebody looks out of, one whose window
-    can be got to."""
+    """One of the nearest rooms of the library for every room type; where somebody looks out of a window, one that has
+    one that can be got to."""
     chosen: Chosen = {}
     for room, match in retrieve_rooms(index, merged, seed=seed).items():
         others = range(seed + 1, seed + TRIED_FOR_A_WINDOW) if room in looked_out_of else ()
