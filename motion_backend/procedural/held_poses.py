@@ -244,7 +244,7 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
 
 
 def _bends_lying(hips: Array, row: Idle) -> Array:
-    """What is left of bends forwards, turns and bends aside: of who lies only what lifts no head off a pillow. (3,)."""
+    """What is left of bends forwards, turns and bends aside: of who lies what lifts no head off its pillow. (3,)."""
     if abs(float(rotations.rotate(hips, UP)[1])) >= LIES:
         return np.ones(3)
     upright_axes = np.abs(rotations.rotate(hips, np.eye(3))[:, 1])
