@@ -114,7 +114,8 @@ def balanced(
 
 def on_its_feet(pose: Pose, phases: Sequence[Phase], skeleton: Skeleton) -> NDArray[np.bool_]:
     """Frames in which the pelvis rests on nothing, as far as phases, height and palms say. (T,)."""
-    free = ~((pose.pressing > 0) & (pose.reaching > 0) & (pose.reach[..., 1] < ON_FLOOR)).any(axis=1)
+    bears = (pose.pressing > 0) & (pose.reaching > 0) & (pose.reach[..., 1] < ON_FLOOR)
+    free: NDArray[np.bool_] = ~np.asarray(bears.any(axis=1))
     height = pose.pelvis[:, 1]
     for phase in phases:
         frames = slice(phase.start, len(pose) if phase is phases[-1] else phase.stop)

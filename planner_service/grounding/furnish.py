@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from itertools import chain
+from typing import Any, Final
 
 from motion_backend.motion import Skill
 from planner_service.composition.furniture_words import pieces_told
 from planner_service.grounding.keyframes_to_actions import NEEDS, Place
 from planner_service.grounding.object_assignment import Placing, StandIn, place_in, usable_offers
-from planner_service.grounding.opening_places import has_opening
+from planner_service.grounding.opening_places import has_opening, opening_place
 from planner_service.grounding.room_assignment import housed
 from planner_service.grounding.seat_access import draw_up, pull_to_dict, seat, seat_with_pulls
 from planner_service.grounding.seat_tables import rests, tables_of
@@ -26,8 +27,12 @@ from scene_graphs.graph.merge import merge
 from scene_graphs.home import MAX_ROOMS, Home, home_from_layouts
 from scene_graphs.layout import Layout
 from scene_graphs.layout_library import built_in_layouts
+from scene_graphs.navigation.path_planner import Walkable
 from scene_graphs.retrieval.layout_index import LayoutIndex, retrieve_rooms
 from scene_graphs.retrieval.match_explanation import Explanation, explain
+
+TRIED_FOR_A_WINDOW: Final = 8
+"""Among so many rooms one is looked for whose window can be got to."""
 
 
 class FurnishError(UserError):
@@ -182,7 +187,7 @@ def furnish(
         if len(graph) > MAX_NODES:
             used = f"{len(graph)} pieces of furniture in the {room.replace('_', ' ')}"
             raise FurnishError(f"the story uses {used}, at most {MAX_NODES} can be", "tell of fewer events", at="theme")
-    chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed)
+    chosen = _given(merged, layouts) if layouts else _retrieved(merged, index, seed, _looked_out_of(script, wanted))
     unique = list(dict.fromkeys([layout for layout, _ in chosen.values()] + list(layouts)))
     if isinstance(given, Home):
         unique, home = list(layouts), given
@@ -264,13 +269,31 @@ def _needs(keyframes: Sequence[PlannedKeyframe]) -> list[frozenset[str]]:
 Chosen = dict[str, tuple[Layout, RoomMatch]]
 
 
-def _retrieved(merged: dict[str, FurnitureGraph], index: LayoutIndex, seed: int) -> Chosen:
-    """One of the nearest rooms of the library for every room type."""
+def _retrieved(
+    merged: dict[str, FurnitureGraph], index: LayoutIndex, seed: int, looked_out_of: frozenset[str]
+) -> Chosen:
+    """One of the nearest rooms of the library for every room type; where somebody looks out of a window, one that has
+    one that can be got to."""
     chosen: Chosen = {}
     for room, match in retrieve_rooms(index, merged, seed=seed).items():
+        others = range(seed + 1, seed + TRIED_FOR_A_WINDOW) if room in looked_out_of else ()
+        tries = chain((match,), (retrieve_rooms(index, {room: merged[room]}, seed=one)[room] for one in others))
+        match = next((one for one in tries if not others or _has_window(index.layout(one.layout_id))), match)
         told = explain(merged[room], index.graph(match.layout_id), match, index.costs)
         chosen[room] = (index.layout(match.layout_id), _room_match(room, match.layout_id, told))
     return chosen
+
+
+def _looked_out_of(script: LongScript, wanted: Sequence[str]) -> frozenset[str]:
+    """The rooms in which somebody goes to a window, as the theme's words say."""
+    said = ((one, opening_of(one.skill, script.said_of(one))) for one in script.keyframes)
+    return frozenset(_room_of(one, wanted) for one, kind in said if kind == "window")
+
+
+def _has_window(layout: Layout) -> bool:
+    """Whether a room has a window that can be got to."""
+    home = home_from_layouts([layout], 0)
+    return opening_place(home, Walkable(home), "window", 0, None) is not None
 
 
 def _given(merged: dict[str, FurnitureGraph], layouts: Sequence[Layout]) -> Chosen:

@@ -416,7 +416,12 @@ class _Stage:
                 following = drafts[index + 1] if index + 1 < len(drafts) else None
                 came = done[-1][1] if done and done[-1][0].skill is Skill.LOCO else None
                 leg = _Leg(came, at, None if following is None else self._leads_to(following, places[index + 1]))
-                action = self._aimed(action, following, places[index], leg, done)
+                if following is not None and runs(action) and self._leads_on(action, following, places[index + 1]):
+                    after = drafts[index + 2] if index + 2 < len(drafts) else None
+                    way = self._walk(following, after, places[index + 1], leg)
+                    action = replace(action, goal=way.goal, facing=way.facing)
+                else:
+                    action = self._aimed(action, following, places[index], leg, done)
             if index == len(drafts) - 1 and action.keyframe not in self.out:  # who has left stands nowhere
                 action = _last(action)
             done.append((action, at))
@@ -447,6 +452,12 @@ class _Stage:
             return replace(action, hold=seconds)
         walk = replace(self._walk(action, following, place, leg), stands=stays(action.caption))
         return self._run(walk, place.room, at) if at is not None and runs(action) else walk
+
+    def _leads_on(self, action: Action, following: Action, place: Place) -> bool:
+        """Whether who runs nowhere in particular runs to where the walk after it would lead."""
+        if action.object_id is not None or self.openings[action.keyframe] is not None:
+            return False
+        return following.skill is Skill.LOCO and place.object_id is not None and not stays(following.caption)
 
     def _run(self, action: Action, room: int, at: Point) -> Action:
         """A run with room for it: where it leads to no place in particular, to where it is longest, in another room too

@@ -127,6 +127,9 @@ class SwingShape:
     heel_off_power: float
     """Of the stride."""
     hop_heel_off_share: float
+    beside_heel_off_share: float
+    """Of a foot that lifts beside the other, as the first of who stood; all of one that is so far behind it:"""
+    behind_m: float
     scuff_stride_share: float
     """Of a full stride, from which on a scuffing foot does so altogether."""
     backwards_share: float
@@ -355,6 +358,8 @@ def _swing_of(
     if clearance > usual:
         clearance = usual + high * (clearance - usual)
     rolled = np.radians(shape.heel_off_deg) * style.roll * abs(leaves) ** shape.heel_off_power
+    behind = float(np.clip(abs(_forward(beside - origin, yaw, shape.behind_m * skeleton.scale)), 0.0, 1.0))
+    rolled *= shape.beside_heel_off_share + (1 - shape.beside_heel_off_share) * behind
     return Swing(
         origin,
         target,
