@@ -108,6 +108,10 @@ def _own_parts(
     if action.skill is Skill.LOCO and action.goal is None:
         return (*rising, Part(PartKind.HOLD, action, hold=action.hold))
     stands = (Part(PartKind.HOLD, action, hold=action.stands),) if action.stands > 0 else ()
+    if action.skill is Skill.LOCO and action.handle is not None and action.spot is not None:
+        # Who leaves opens the door first.
+        to = Part(PartKind.WALK, action, action.spot.standing, action.spot.approach)
+        return (*rising, to, Part(PartKind.REACH, action), _part(PartKind.WALK, action, None), *stands)
     if action.skill in RISINGS:
         return (*rising, *(stands or (Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY),)))
     return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]), *stands)

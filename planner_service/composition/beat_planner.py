@@ -35,7 +35,11 @@ from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
 from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from planner_service.themes.details import details_of
+from planner_service.themes.lexicon import is_noun, lemma_of
+from planner_service.themes.protagonist import is_person, names_somebody
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things, things_called
+from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
@@ -75,9 +79,12 @@ def serve_beats(
     acted, repairs = repair(writer.keyframes)
     acted = with_worked(read, with_things(read, acted))
     acted, reacted = with_reactions(read, acted if planned else as_hands_hold(acted))
+    beats = _with_reasons(read, writer, acted, reacted)
+    if not planned and _tells_of_nobody(read, beats):
+        raise ThemeError(f"it tells of nobody, and of hardly anything that a body does at home. {LANGUAGE}")
     return LongScript(
         theme=theme,
-        beats=_with_reasons(read, writer, acted, reacted),
+        beats=beats,
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
         keyframes=acted,
         repairs=(*record.notes, *repairs),
@@ -87,6 +94,15 @@ def serve_beats(
         encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
+
+
+def _tells_of_nobody(read: Sequence[ReadBeat], beats: Sequence[Beat]) -> bool:
+    """Whether words name nobody, and no verb that is no noun too is played, nor half of them: "Red, green, yellow"."""
+    if any(is_person(one.hero) or names_somebody(one.clause) for one in read):
+        return False
+    told = (one.clause.verb and not is_noun(one.text.split()[0].lower()) for one in read)
+    played = any(sure and not beat.why for sure, beat in zip(told, beats, strict=True))
+    return not played and 2 * sum(beat.seen for beat in beats) < len(beats)
 
 
 def _write(
@@ -161,15 +177,19 @@ def _with_reasons(
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
         kind = "feeling" if index in writer.moody else one.beat.kind
-        besides = _besides(index, with_its_noun(index, read)[0], writer, keyframes) if known else ()
+        besides = _besides(index, with_its_noun(index, read), writer, keyframes) if known else ()
         beats.append(one.beat.model_copy(update={"why": why, "kind": kind, "unshown": besides}))
     return tuple(beats)
 
 
 def _besides(
-    index: int, read: ReadBeat, writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+    index: int,
+    beats: tuple[ReadBeat, Sequence[ReadBeat]],
+    writer: KeyframeWriter,
+    keyframes: Sequence[PlannedKeyframe],
 ) -> tuple[str, ...]:
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
+    read, every = beats
     if index in writer.moody:
         seen = read.clause.verb not in EXPRESSIONS or (read.clause.verb in FACES and read.beat.emotion in EXPRESSED)
         known = (read.sure or read.beat.kind == "feeling") and seen and not _does_more(read)
@@ -188,8 +208,19 @@ def _besides(
         return ()
     by = BY_A_WALL.search(read.text) if all(one.skill in (Skill.SITDOWN, Skill.LIEDOWN) for one in own) else None
     besides = unseen(read.clause, (*_led_by(own, keyframes), *own))
+    if _is_of_a_pet(index, every):
+        besides = ("it", *besides)
     # Seats stand where they do.
     return (*besides, by[0]) if by and not any(by[0] in one for one in besides) else besides
+
+
+def _is_of_a_pet(index: int, beats: Sequence[ReadBeat]) -> bool:
+    """Whether "it" in a beat is an animal that was named last: "the cat jumps down, so she picks | it | up"."""
+    if "it" not in beats[index].clause.lemmas[1:]:
+        return False
+    words = (lemma_of(token.low) for one in reversed(beats[:index]) for token in reversed(tokens_of(one.text)))
+    named = next((word for word in words if word in things()), "")
+    return named in things_called("pet")
 
 
 def _led_by(own: Sequence[PlannedKeyframe], keyframes: Sequence[PlannedKeyframe]) -> Sequence[PlannedKeyframe]:

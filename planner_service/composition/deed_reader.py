@@ -284,7 +284,10 @@ class DeedReader:
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
             first = one.beat.who.split(" ")[0]
-            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or _sounds(one) or is_state(one.clause):
+            not_yet = one.clause.aside and one.clause.joint == "before"
+            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or not_yet:
+                return one
+            if _sounds(one) or is_state(one.clause):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             words = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text

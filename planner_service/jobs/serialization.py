@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, fields
 
-from motion_backend.motion import Action, Emotion, Reaction, Skill
+from motion_backend.motion import Action, Emotion, Handle, Reaction, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
 from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
@@ -65,7 +65,8 @@ def action_from_dict(row: Json) -> Action:
     told = {name: value for name, value in row.items() if name in known}
     plain: Json = {name: tuple(value) if isinstance(value, list) else value for name, value in told.items()}
     plain["reacts"] = tuple(Reaction(**one) for one in row.get("reacts", ()))
-    return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"]), "spot": spot})
+    plain |= {"handle": Handle.from_dict(row.get("handle")), "spot": spot}
+    return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"])})
 
 
 __all__ = [

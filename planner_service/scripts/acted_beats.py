@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from motion_backend.motion import RISINGS, Does, Emotion, Skill
-from planner_service.scripts.script import REACTED, Beat, Keyframe, LongScript, PlannedKeyframe
+from planner_service.scripts.script import REACTED, WISHED, Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
 from planner_service.scripts.still_things import still_in
 from scene_graphs.json_fields import Json
@@ -38,6 +38,8 @@ RESTS: Final = re.compile(
 OF_LIMBS: Final = re.compile(r"\b(?:hands?|arms?|knees?|foot|feet)\b")
 """Words of a note (`Motion.notes`) on nothing but arms and legs."""
 _OF_HANDS: Final = re.compile(r"\b(?:hands?|arms?)\b")
+_OPEN_ARMS: Final = "open arms"
+"""Of a note on how somebody walks."""
 _TELLS_LEGS: Final = re.compile(
     r"\b(?:legs?|knees?|foot|feet|stretch\w*|kneel\w*|knelt|sit-ups?|push-ups?|exercis\w*|yoga)\b"
 )
@@ -137,12 +139,12 @@ class ActedBeats:
     @property
     def undone(self) -> tuple[Outcome, ...]:
         """Those that are left undone, as asked."""
-        return tuple(one for one in self.outcomes if one.beat.kind == "undone")
+        return tuple(one for one in self.outcomes if one.beat.kind == "undone" and one.why != WISHED)
 
     @property
     def told(self) -> tuple[Outcome, ...]:
-        """Those that are no deeds, or are only spoken of: nobody is asked to do them."""
-        return tuple(one for one in self.outcomes if not one.beat.asked and one.beat.kind != "undone")
+        """Those that are no deeds, or are only spoken of or wished for: nobody is asked to do them."""
+        return tuple(one for one in self.outcomes if not one.beat.asked and one not in self.undone)
 
     @property
     def reacted(self) -> tuple[Outcome, ...]:
@@ -258,6 +260,8 @@ def _concerns(words: str, beat: Beat) -> bool:
     piece that something is done in place of must be named; a mood is seen however the arms are."""
     if IN_PLACE_OF in words:
         return re.search(rf"\b{re.escape(words.partition(IN_PLACE_OF)[2])}", beat.text, re.IGNORECASE) is not None
+    if _OPEN_ARMS in words:
+        return "arms" in beat.text  # who "walks out of the door" does so with arms before them too
     if OF_LIMBS.search(words) and not _OF_HANDS.search(words):
         return _TELLS_LEGS.search(beat.text) is not None  # who "enjoys a quiet afternoon" does with bent legs too
     return not (OF_LIMBS.search(words) and (beat.kind == "feeling" or RESTS.match(beat.text)))

@@ -195,6 +195,12 @@ happened before and is only thought of · what somebody else or the world does, 
 Sunday" · what is said."""
 
 
+HAPPENS: Final = "it happens, and nobody does it"
+"""Why what weather and things do is not acted."""
+WISHED: Final = "it is only wished for"
+"""Why what somebody wants is not acted."""
+
+
 class Beat(_ScriptPart):
     """One thing that a theme says happens, or does not, in the order of time."""
 
@@ -226,10 +232,10 @@ class Beat(_ScriptPart):
 
     @property
     def asked(self) -> bool:
-        """Whether the theme asks for it: all but what is left undone, what is told and nobody does, and what only
+        """Whether the theme asks for it: all but what is left undone or wished for, what nobody does, and what only
         happens, and is reacted to."""
         told = self.kind == "undone" or (self.kind == "other" and not self.who)
-        return not (told or self.why.startswith(REACTED))
+        return not (told or self.why == HAPPENS or self.why.startswith(REACTED))
 
 
 Pronouns = Literal["he", "she", "they"]
