@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_table import deed_table
-from planner_service.composition.phone_call import is_talk
+from planner_service.composition.phone_call import HANGING_UP, is_talk
 from planner_service.composition.whereabouts import Whereabouts
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import PlannedKeyframe
@@ -70,6 +70,16 @@ class BodyTrack:
         self.keyframes[-1] = last.model_copy(update={"also": (*last.also, index)})
         if self.resting is not None:
             self.resting = self.keyframes[-1]
+
+    def hang_up(self, index: int, mood: Emotion) -> None:
+        """A call ends: it is seen of who is angry on their feet, with the hand that the phone was in."""
+        last = self.keyframes[-1]
+        if mood is Emotion.ANGRY and last.skill is Skill.LOCO:
+            self.keyframes[-1] = last.model_copy(update={"caption": last.caption.replace("left hand", "right hand")})
+            self.put(index, Skill.LOCO, mood, HANGING_UP, "floor", last.room)
+        else:
+            self.show(index)
+        self.hung_up = len(self.keyframes)
 
     def go_on(self, index: int, mood: Emotion) -> None:
         """The same once more, asleep or on the phone, in another mood."""

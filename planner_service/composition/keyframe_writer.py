@@ -157,8 +157,7 @@ class KeyframeWriter:
             self.body.show(index)  # "falls asleep, and dreams"
             self.deeds[index] = deed
         elif deed is not None and self.body.calling and hangs_up(read) and not deed.named:
-            self.body.show(index)
-            self.body.hung_up = len(self.keyframes)
+            self.body.hang_up(index, beat.emotion)
         elif deed is not None and (row := self._within(read)) is not None:
             self.body.show(index)
             self.deeds.update({index: replace(deed, row=row)} if row.stands else {})

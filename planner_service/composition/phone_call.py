@@ -33,6 +33,9 @@ _SEATED: Final = ("sitting upright, phone at the right ear",)
 _LYING: Final = ("talking on the phone while lying, right hand at the ear",)
 
 
+HANGING_UP: Final = "hanging up, the phone thrust down in the right hand"
+
+
 def is_talk(caption: str) -> bool:
     """Whether a body has a phone at its ear in a caption."""
     return _TALKS.search(caption) is not None

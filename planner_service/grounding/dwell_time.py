@@ -18,6 +18,9 @@ _LASTS: Final = re.compile(
     re.IGNORECASE,
 )
 _STILL: Final = re.compile(r"\b(?:motionless|without moving|still|frozen|patiently)\b", re.IGNORECASE)
+FEELS: Final = 4.5
+"""Seconds for which who cries or is out of breath does so, at least."""
+_FEELS: Final = re.compile(r"^(?:crying|panting)\b")
 STANDS, WAITS = "stand still", "stand still, waiting"
 """Who waits on their feet shifts from leg to leg, looks about and at the watch."""
 
@@ -25,6 +28,8 @@ STANDS, WAITS = "stand still", "stand still, waiting"
 def lingering(action: Action, said: str) -> Action:
     """The action, held longer where the theme's words for it say that it lasts, and done as who waits where they say
     so; a walk or a touch is not."""
+    if action.skill is Skill.SITDOWN and _FEELS.search(action.caption):
+        action = replace(action, hold=max(action.hold, FEELS))
     if not (_WAITS.search(said) or _LASTS.search(said)):
         return action
     if _WAITS.search(said) and action.caption == STANDS and not _STILL.search(said):

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import sys
 import zlib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import groupby, pairwise
 from typing import Final
@@ -188,9 +188,16 @@ class _Teller:
     def _keyframes(self, shown: Sequence[tuple[Stretch, tuple[int, ...]]]) -> dict[int, tuple[int, ...]]:
         """By token the keyframes it tells, those of each stretch by its own words alone: a theme may tell what is done
         later first."""
-        groups = [(stretch.start, stretch.end, own) for stretch, own in shown]
+        groups = sorted([*((stretch.start, stretch.end, own) for stretch, own in shown), *self._reacted(shown)])
         groups = [self._with_others(*group, *near) for group, near in zip(groups, _between(groups), strict=True)]
         return {at: keyframes for start, end, keyframes in groups for at in range(start, end)}
+
+    def _reacted(self, shown: Sequence[tuple[Stretch, tuple[int, ...]]]) -> Iterator[tuple[int, int, tuple[int, ...]]]:
+        """The words of what happens, from and to tokens, with the keyframe that is seen to react to it."""
+        told = {stretch.beat for stretch, _ in shown}
+        for index, keyframe in enumerate(self.script.keyframes):
+            for beat in (beat for row in keyframe.reacts for beat in row.beats if beat not in told and beat in self.of):
+                yield self.of[beat].start, self.of[beat].end, (index,)
 
     def _with_others(
         self, start: int, end: int, keyframes: tuple[int, ...], after: int, before: int

@@ -5,10 +5,11 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.language.sentence_encoder import HashingEncoder
-from motion_backend.motion import Reacts, Skill
+from motion_backend.motion import Character, Reacts, Skill
 from planner_service.composition.compose import compose
 from planner_service.composition.heard_events import taken
 from planner_service.composition.request import Request
+from planner_service.narration.narrator import narrate
 from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import REACTED, LongScript, PlannedKeyframe, Reacted
@@ -106,3 +107,12 @@ def test_places_of_events_are_openings_or_furniture_we_know() -> None:
     found = [way for theme in themes for read in beats_of(f"She sits. {theme}") if (way := taken(read))]
     assert len(found) == len(themes)
     assert all(way.at in ("", "door", "window", "phone") or is_known(way.at) for way in found)
+
+
+def test_the_words_of_an_event_are_told_with_the_keyframe_that_reacts_to_it() -> None:
+    script = planned("He sits on the sofa. Suddenly the lamp goes out, and he looks out of the window.")
+    told = narrate(script, Character())
+    (at,) = [index for index, one in enumerate(script.keyframes) if one.reacts]
+    (span,) = [span for span in told.spans if "lamp" in told.text[span.start : span.end]]
+    assert span.keyframes == (at,)
+    assert any(one.start <= span.start and span.end <= one.end for one in told.thoughts)

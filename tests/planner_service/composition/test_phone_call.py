@@ -9,7 +9,7 @@ from for_each import for_each
 from motion_backend.language.sentence_encoder import HashingEncoder
 from motion_backend.motion import Emotion, Skill
 from planner_service.composition.compose import compose
-from planner_service.composition.phone_call import is_talk
+from planner_service.composition.phone_call import HANGING_UP, is_talk
 from planner_service.composition.request import Request
 from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.built_in_scripts import built_in
@@ -36,13 +36,14 @@ def acted(theme: str) -> list[PlannedKeyframe]:
     ],
 )
 def test_all_of_a_call_has_the_phone_at_the_ear(theme: str, calls: int) -> None:
-    assert [is_talk(one.caption) for one in acted(theme)] == [True] * calls
+    keyframes = [one for one in acted(theme) if one.caption != HANGING_UP]
+    assert [is_talk(one.caption) for one in keyframes] == [True] * calls
 
 
 def test_who_shouts_on_the_phone_is_angry_there_and_has_none_after_it() -> None:
-    shouts, sits = acted("He shouts at his boss on the phone, hangs up and sits down on the sofa.")
+    shouts, hangs_up, sits = acted("He shouts at his boss on the phone, hangs up and sits down on the sofa.")
     assert is_talk(shouts.caption)
-    assert shouts.mood is Emotion.ANGRY
+    assert (shouts.mood, hangs_up.caption) == (Emotion.ANGRY, HANGING_UP)
     assert (sits.skill, is_talk(sits.caption)) == (Skill.SITDOWN, False)
 
 
