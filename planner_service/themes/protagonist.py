@@ -186,7 +186,9 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if mains and mains[0].lower() == "you":
         return "you"
     people = [clause for clause in told if is_person(clause.subject) and not _are_things(clause, told)]
-    people = [one for one in people if not (pronoun and one is not told[0] and one.subject.lower() in _SOMEBODY)]
+    heard = {"knock", "ring"} | theme_words()["sounds"]  # "somebody knocks; he hides"
+    people = [one for one in people if not (pronoun and one.subject.lower() in _SOMEBODY
+                                            and (one is not told[0] or one.verb in heard))]  # fmt: skip
     done = (one for one in clauses if not (one.aside or one.joint == "to" or (one.denied and not one.unable)))
     deeds = Counter(one.doer for one in done)
     first = min(((one.sentence, one.place) for one in people if _stands_for(one.subject)), default=(len(clauses), 0))
