@@ -6,7 +6,7 @@ for (SIMS 3.2).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -17,6 +17,7 @@ from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.earlier_deeds import with_its_noun
 from planner_service.composition.gainsaid import is_gainsaid
+from planner_service.composition.heard_events import with_reactions
 from planner_service.composition.held_things import as_hands_hold, is_handled, with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
@@ -42,6 +43,8 @@ from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
+FACES: Final = ("smile", "grin", "beam", "smirk", "frown", "scowl")
+"""What is seen in a face, whatever else is done: nobody laughs or sobs in that alone."""
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
 _LIKELY: Final = 3
@@ -77,14 +80,15 @@ def serve_beats(
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
     acted = with_worked(read, with_things(read, acted))
-    beats = _with_reasons(read, writer, acted)
+    acted, reacted = with_reactions(read, acted if planned else as_hands_hold(acted))
+    beats = _with_reasons(read, writer, acted, reacted)
     if not planned and _tells_of_nobody(read, beats):
         raise ThemeError(f"it tells of nobody, and of hardly anything that a body does at home. {LANGUAGE}")
     return LongScript(
         theme=theme,
         beats=beats,
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
-        keyframes=acted if planned else as_hands_hold(acted),
+        keyframes=acted,
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
         method=request.method,
@@ -153,9 +157,13 @@ def _named_part(served: PlannedBeat, library: ScriptLibrary) -> Part | None:
 
 
 def _with_reasons(
-    read: Sequence[ReadBeat], writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+    read: Sequence[ReadBeat],
+    writer: KeyframeWriter,
+    keyframes: Sequence[PlannedKeyframe],
+    reacted: Mapping[int, str],
 ) -> tuple[Beat, ...]:
-    """The beats as they are planned: those that no keyframe shows with the reason.
+    """The beats as they are planned: those that no keyframe shows with the reason; nobody is asked to do what is
+    `reacted` to.
 
     What a mood alone shows ("grins") is a feeling, and shown wherever something is done in that mood.
     """
@@ -163,6 +171,9 @@ def _with_reasons(
     moods = {keyframe.mood for keyframe in keyframes}
     beats = []
     for index, one in enumerate(read):
+        if index in reacted:
+            beats.append(one.beat.model_copy(update={"why": reacted[index]}))
+            continue
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
         kind = "feeling" if index in writer.moody else one.beat.kind
@@ -180,7 +191,7 @@ def _besides(
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
     read, every = beats
     if index in writer.moody:
-        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
+        seen = read.clause.verb not in EXPRESSIONS or (read.clause.verb in FACES and read.beat.emotion in EXPRESSED)
         known = (read.sure or read.beat.kind == "feeling") and seen and not _does_more(read)
         known = known and not is_gainsaid(read.clause, [one for one in keyframes if one.mood is read.beat.emotion])
         return details_of(read.clause) if known else (read.text,)

@@ -17,6 +17,7 @@ from planner_service.themes.lexicon import grammar, lemma_of, participle
 from planner_service.themes.memories import RECALLING, recalled_in
 from planner_service.themes.no_deeds import tells_no_deed
 from planner_service.themes.no_theme import asks_for_something, no_prose
+from planner_service.themes.outline import lines_of
 from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
 from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -138,10 +139,11 @@ def clean(theme: object) -> str:
 def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
     text = clean(theme)
-    if why := no_prose(text):
+    lines = lines_of(text)
+    if why := no_prose(lines):
         raise ThemeError(f"{text[:60]!r} {why}. {LANGUAGE}")
     clauses = clauses_of_text(text)
-    if asks_for_something(text, clauses):
+    if asks_for_something(lines, clauses):
         raise ThemeError(f"{text[:60]!r} asks for something, and tells of nobody.")
     return read_beats(clauses)
 

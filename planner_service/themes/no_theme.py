@@ -46,8 +46,10 @@ def no_prose(text: str) -> str:
     tokens = tokens_of(text)
     words = [token.low for token in tokens if token.text[:1].isalpha()]
     plain = [token.low for token in tokens if token.text.isalpha() and token.text.islower()]
-    unknown = len(plain) > 3 and 2 * sum(map(is_known_word, plain)) < len(plain)
-    if unknown or not any(re.search(r"[a-z]", word) for word in words) or language_of(text) not in (ENGLISH, ANOTHER):
+    known_words = sum(map(is_known_word, plain))
+    unknown = len(plain) > 3 and 2 * known_words < len(plain)
+    foreign = 10 * known_words < 9 * len(plain) and language_of(text) not in (ENGLISH, ANOTHER)  # "no TV, no phone"
+    if unknown or foreign or not any(re.search(r"[a-z]", word) for word in words):
         language = foreign_language(text)
         return f"looks like {language}" if language != ANOTHER else "is no everyday English"
     known = [lemma_of(word) in things() or is_known(word) or is_known(lemma_of(word)) for word in words]

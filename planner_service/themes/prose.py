@@ -18,6 +18,7 @@ from planner_service.themes.lexicon import (
     participle,
     verb_of,
 )
+from planner_service.themes.outline import lines_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import names
 
@@ -44,13 +45,16 @@ _DECADE: Final = re.compile(r"\b(?:(?:early|mid|late)[- ])?([2-9])0s\b")
 _AGED: Final = re.compile(r"(?<=[A-Za-z]), (?P<age>(?:(?:early|mid|late)[- ])?[2-9]0s)(?P<mark>[,.])")
 _ABOUT: Final = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
 _LABEL: Final = re.compile(
-    r"(?:(?<=^)|(?<=[.!?;] )|(?<=\n))(?:(?P<wish>goal|objective|aim|want|wants|need|motivation|task)"
+    r"(?:(?<=^)|(?<=[.!?;] )|(?<=\n))(?:(?P<wish>goal|objective|aim|want|wants|need|motivation"
+    r"|task(?=:.*\b(?:sub-?)?(?:steps|tasks):))"
     r"|(?P<who>(?:main )?character|protagonist|hero|heroine|who)|(?P<where>setting|location|place|where)"
     r"|(?P<left>genre|tone|style|mood|title|length|duration|rating)"
     r"|obstacles?|conflict|problem|stakes|resolution|ending|end|beginning|middle|twist|climax|plot|story|premise|logline"
-    r"|steps?|solution|answer|prompt|theme|idea|action|outcome|result|what happens|start|finally)"
+    r"|(?:sub-?)?(?:steps?|tasks?)|solution|answer|prompt|theme|idea|action|outcome|result|what happens|start|finally"
+    r"|intro|outro|trigger|loop|idle|sequence|cue|setup|payoff|event|reaction|response|beats?|shots?|first|second|third"
+    r"|then|next|last)"
     r"\s?: +(?P<told>[^.!?\n;]*[.!?;]?)",
-    re.IGNORECASE,
+    re.IGNORECASE | re.DOTALL,
 )
 """What an outline calls its parts: "Goal: leave the house"."""
 _ROLE: Final = re.compile(
@@ -96,17 +100,10 @@ _ME: Final = re.compile(r"^me (?P<when>(?:at|on|in|after|every) [^,]*? )?(?P<doi
 _TEXTED: Final = {"u": "you", "ur": "your", "im": "I am", "ive": "I have"}
 
 
-_FEWEST_ITEMS: Final = 2
-_NUMBERED: Final = re.compile(
-    r"(?:(?<=^)|(?<=[\s:,;.]))(?:\(?(?P<number>\d{1,2})[.)]|step (?P<step>\d{1,2})[:.])\s+(?=[A-Za-z])", re.IGNORECASE
-)
-"""The number of an item of a list: "1. make the bed 2. shower"."""
-
-
 @lru_cache(maxsize=256)
 def prose_of(theme: str) -> str:
     """The theme in sentences, which are read and told in its place."""
-    text = _SLUG.sub(_slug, _CUT.sub("", _unnumbered(theme)))
+    text = _SLUG.sub(_slug, _CUT.sub("", lines_of(theme)))
     text = _PERSON.sub(_brought_in, text)
     text = _AGED.sub(lambda one: f", {_about(one['age'])}{one['mark']}", text)
     text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)
@@ -118,17 +115,6 @@ def prose_of(theme: str) -> str:
     text = _POSED.sub(_posed, _ME.sub(lambda one: f"{one['when'] or ''}I am {one['doing']}", text))
     text = _STATE.sub(lambda one: f"{one[1]} is " if is_adjective(one[2].lower()) else one[0], text)
     return _SHORT.sub(_written_out, text).strip() or theme
-
-
-def _unnumbered(theme: str) -> str:
-    """A numbered list with each item as a sentence."""
-    numbers = [int(one["number"] or one["step"]) for one in _NUMBERED.finditer(theme)]
-    if "\n" in theme or numbers != [*range(1, len(numbers) + 1)] or len(numbers) < _FEWEST_ITEMS:
-        return theme
-    lead, *items = (part.strip() for part in _NUMBERED.sub("\n", theme).split("\n"))
-    items = [item for item in items if item]
-    lead = f"{lead.rstrip(' :,;.')}. " if lead else ""
-    return lead + " ".join(f"{item[:1].upper()}{item[1:].rstrip(' ,;.')}." for item in items)
 
 
 def _slug(one: re.Match[str]) -> str:

@@ -113,14 +113,14 @@ def test_questions_that_tell_of_nobody_are_refused(theme: str, is_refused: bool)
 @for_each(
     ("theme", "prose"),
     (
-        ("Her morning: 1. make the bed 2. shower, 3. eat", "Her morning. Make the bed. Shower. Eat."),
-        ("1) He wakes up. 2) He reads.", "He wakes up. He reads."),
-        ("Step 1: open the door. Step 2: leave.", "Open the door. Leave."),
+        ("Her morning: 1. make the bed 2. shower, 3. eat", "Her morning\nmake the bed\nshower\neat"),
+        ("1) He wakes up. 2) He reads.", "He wakes up.\nHe reads."),
+        ("Step 1: open the door. Step 2: leave.", "open the door.\nleave."),
         ("He lives at number 7. He sleeps.", "He lives at number 7. He sleeps."),
         ("She is 1. Then 3. She sits.", "She is 1. Then 3. She sits."),
     ),
 )
-def test_a_numbered_list_in_a_line_is_its_items_one_after_the_other(theme: str, prose: str) -> None:
+def test_a_numbered_list_in_a_line_is_a_line_for_each_item(theme: str, prose: str) -> None:
     assert prose_of(theme) == prose
 
 
