@@ -35,8 +35,8 @@ from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
 from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from planner_service.themes.details import details_of
-from planner_service.themes.lexicon import is_noun, lemma_of
-from planner_service.themes.protagonist import is_person, names_somebody
+from planner_service.themes.lexicon import lemma_of
+from planner_service.themes.protagonist import names_somebody
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things, things_called
 from planner_service.themes.verb_finder import tokens_of
@@ -49,6 +49,8 @@ _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
 _LIKELY: Final = 3
 """Pieces of furniture where a deed is done most."""
+_HEAP: Final = 3
+"""So many words without a verb, or as many times those that are played, are no theme."""
 _MIN_SCORE: Final = 0.3
 """How well a short script must answer a beat for a part of it to be taken."""
 
@@ -97,12 +99,10 @@ def serve_beats(
 
 
 def _tells_of_nobody(read: Sequence[ReadBeat], beats: Sequence[Beat]) -> bool:
-    """Whether words name nobody, and no verb that is no noun too is played, nor half of them: "Red, green, yellow"."""
-    if any(is_person(one.hero) or names_somebody(one.clause) for one in read):
+    """Whether words name nobody and no verb, and hardly one of them is played: "Red, green, yellow, music"."""
+    if any(one.clause.verb or names_somebody(one.clause) for one in read):
         return False
-    told = (one.clause.verb and not is_noun(one.text.split()[0].lower()) for one in read)
-    played = any(sure and not beat.why for sure, beat in zip(told, beats, strict=True))
-    return not played and 2 * sum(beat.seen for beat in beats) < len(beats)
+    return len(beats) >= _HEAP and _HEAP * sum(beat.seen for beat in beats) <= len(beats)
 
 
 def _write(

@@ -25,7 +25,7 @@ from planner_service.themes.verb_finder import tokens_of
 from scene_graphs.furniture import categories_of
 
 _PLACE: Final = re.compile(
-    r"\b(?P<how>on top of|on|onto|upon|in|into|inside|under|underneath|beneath|behind|against|through|over)"
+    r"\b(?P<how>on top of|on|onto|upon|in|into|inside|from|out of|under|underneath|beneath|behind|against|through|over)"
     r" (?P<what>(?:the|an?|his|her|their|my|its|every|each) (?:[\w'-]+ ){0,2}?[\w'-]+)(?= (?:\w+ly|and|to|with|while"
     r"|for|until|as|again)\b|[,.;]|$)",
     re.IGNORECASE,
@@ -57,6 +57,7 @@ _LED: Final = (
 """Words before a name."""
 _ON: Final = frozenset(("on top of", "on", "onto", "upon"))
 _HIDDEN: Final = frozenset(("under", "underneath", "beneath", "behind", "in", "into", "inside", "through"))
+_FROM: Final = ("from", "out of")
 _UNDER: Final = frozenset(("under", "underneath", "beneath"))
 _OFTEN: Final = re.compile(
     r"\b(?:twice|thrice|(?:two|three|four|five|six|seven|eight|nine|ten|a dozen|many|several|a hundred) times"
@@ -185,6 +186,8 @@ def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     for place in _PLACE.finditer(clause.text):
         how, what = place["how"].lower(), place["what"]
         beside_verb = clause.text[: place.start()].strip() == first
+        if how in _FROM and not _is_carried(what):
+            continue  # where somebody comes from is not seen there
         worn = how == "on" and lemma_of(_words(what)[-1]) in things_called("clothes")  # "ties | on an apron"
         if beside_verb and how not in _UNDER and (worn or clause.verb in theme_words()["particle_verbs"]):
             continue

@@ -54,5 +54,5 @@ def things_told(text: str) -> list[str]:
     """The things that a deed is done to, as they are named: after its verb and before any preposition."""
     words = re.findall(r"[a-z]+", text.lower())[1:]
     plain = takewhile(lambda word: word not in grammar().prepositions, words)
-    nouns = (word for word in plain if word == lemma_of(word) or not word.endswith(("ed", "ing")))  # not "phoned"
+    nouns = (word for word in plain if word == lemma_of(word) or word.endswith("s"))  # not "stuck"
     return [word for word in nouns if lemma_of(word) in things() and len(word) > _FEWEST]

@@ -25,6 +25,7 @@ WALKING = keyframe(Skill.LOCO, "steadily walking forward", "floor")
 SWEEPING = keyframe(Skill.LOCO, "sweeping the floor with both hands", "floor")
 KNEELING = keyframe(Skill.LOCO, "kneeling on the floor, hands on thighs", "wardrobe")
 DRESSING = keyframe(Skill.LOCO, "dressing, both hands at the chest", "floor")
+EATING = keyframe(Skill.LOCO, "eating while standing, right hand to the mouth", "floor")
 SITTING = keyframe(Skill.SITDOWN, "sit upright with hands on thighs", "armchair")
 DRINKING = keyframe(Skill.SITDOWN, "drinking at the table, right hand to the mouth", "armchair")
 CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
@@ -65,6 +66,8 @@ CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
         ("He scrubs the bathtub on his knees.", HAND, ("the bathtub", "on his knees")),
         ("He scrubs the wardrobe on his knees.", KNEELING, ()),
         ("She ties on an apron.", DRESSING, ("an apron",)),
+        ("He eats noodles from the pan.", EATING, ("from the pan",)),
+        ("He gets up from the armchair.", READING, ()),
         ("He opens a beer.", SITTING, ("a beer",)),
         ("He opens a beer.", DRINKING, ()),
     ],

@@ -120,7 +120,7 @@ def test_a_narrative_gives_short_scripts_by_rules_and_says_so() -> None:
 def test_a_scene_in_which_nobody_acts_gives_nothing_and_says_why() -> None:
     (dreadful,) = [scene for scene in taken_out(NARRATIVE).scenes if not scene.scripts]
     assert dreadful.reason == "nobody in it does what a body can act"
-    assert "The weather was dreadful all day: somebody or something else does it" in dreadful.unused
+    assert "The weather was dreadful all day: it happens, and nobody does it" in dreadful.unused
 
 
 def test_a_screenplay_plays_where_its_sluglines_say_and_its_speech_counts_for_the_feeling() -> None:
