@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
@@ -43,17 +43,20 @@ class FilmSet:
     """Those of rooms that were seen."""
 
     @staticmethod
-    def of(home: Home) -> FilmSet:
-        """A home on its base."""
+    def of(home: Home, but: Collection[str] = ()) -> FilmSet:
+        """A home on its base, `but` for the meshes of these names."""
         from scene_graphs.meshes.interior_mesh import base_mesh
 
         mesh = base_mesh(home)
         base = Solid(mesh.vertices, mesh.faces, mesh.color, outside=True)
-        return FilmSet(home, tuple(home_props(home)), base, float(mesh.vertices[:, 1].min()))
+        return FilmSet(home, tuple(home_props(home, but)), base, float(mesh.vertices[:, 1].min()))
 
     def seen(self, camera: Camera, joints: Array) -> Sequence[Solid]:
-        """What a camera sees of it, open in front of a body whose joints in some frames are (T, 22, 3)."""
-        places = joints[::STEP].reshape(-1, 3)
+        """What a camera sees of it, open in front of a body whose joints in some frames are (T, 22, 3): who has gone
+        out by a door is seen through that."""
+        some = joints[::STEP].reshape(-1, 3)
+        within = self.home.on_floor(some[:, [0, 2]])
+        places = some[within] if within.any() else some
         room = self._room_of(joints[len(joints) // 2])
         used = {self._room_of(pose) for pose in joints[::STEP]}
         near = within_reach(self.props, camera, REACH)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, PhaseKind
-from motion_backend.props import PropTrack, prop_points, prop_tracks
+from motion_backend.props import PropTrack, prop_points, prop_tracks, replaced
 from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
 from motion_backend.rendering.film_counterpart import Counterpart, Kind
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
@@ -147,7 +147,7 @@ def film_shots(
     positions, turns = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
     joints = positions.astype(np.float64)
     props = prop_tracks(motion, role)
-    director = _Director(motion, joints, turns, FilmSet.of(home), aspect, props)
+    director = _Director(motion, joints, turns, FilmSet.of(home, replaced(role)), aspect, props)
     before: FilmShot | None = None
     for cut in film_cuts(motion, joints, starts, role, edit, props):
         for part in _parts(cut, director, before):

@@ -179,8 +179,9 @@ class Prop:
         return bool(nearer > 0 and self.high[1] > 0.1)
 
 
-def home_props(home: Home) -> list[Prop]:
-    """Everything of a home that can be drawn; walls, what hangs on them and lamps under the ceiling cast no shadow."""
+def home_props(home: Home, but: Collection[str] = ()) -> list[Prop]:
+    """Everything of a home that can be drawn `but` meshes of these names; walls, what hangs on them and lamps under
+    the ceiling cast no shadow."""
     from scene_graphs.meshes.furniture_mesh import home_meshes
     from scene_graphs.meshes.interior_mesh import stump_meshes
 
@@ -193,7 +194,7 @@ def home_props(home: Home) -> list[Prop]:
     borne = {placed.id: Borne(placed, walls) for placed, walls in against if walls}
     hung = {placed.id: Boxes.of((placed,)).wider(HUNG_FREE) for placed in home.objects if placed.category in HUNG}
     props = []
-    for mesh in home_meshes(home):
+    for mesh in (one for one in home_meshes(home) if one.name not in but):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         middle = (float(low[0] + high[0]) / 2, float(low[2] + high[2]) / 2)
         hangs = bool(sides) and mesh.name.startswith(ON_WALLS)
