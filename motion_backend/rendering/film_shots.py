@@ -256,7 +256,7 @@ class _Director:
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         way = rotations.rotate(self.turns[frames, 0], np.array([0.0, 0.0, 1.0]))
-        sight = self.set.sight(_middle(points))
+        sight = self.set.sight(_middle(points), poses)
         front = self._front(framing, sight)
         before_it = front is not None or there is not None
         widest = BEYOND if before_it else PROFILE if framing.deed and not framing.gesture else QUARTER
@@ -353,7 +353,7 @@ class _Director:
         held = [prop_points(self.props, frame) for frame in frames.tolist()] if close.hands else []
         points = np.concatenate([_head(poses, turns), hands, *held])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
-        sight = self.set.sight(_middle(points))
+        sight = self.set.sight(_middle(points), poses)
         front = None if close.of_face else self._front(close, sight)
         tall = turns[:, 0 if close.of_face else INDEX["head"]]  # a head may hang between the knees of who sits
         upright = rotations.rotate(tall, np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
