@@ -22,6 +22,7 @@ from planner_service.composition.compose import compose, script_of
 from planner_service.composition.request import MAX_SHORT_SCRIPTS, METHODS, Request
 from planner_service.grounding.furnish import Furnished, furnish
 from planner_service.grounding.keyframes_to_actions import Kept, act
+from planner_service.grounding.resting_places import resting_places
 from planner_service.grounding.room_assignment import usual_furniture
 from planner_service.grounding.worked_pieces import worked_pieces
 from planner_service.library.library import Shelves
@@ -338,7 +339,9 @@ def role_of(character: Character, actions: Sequence[Action], script: LongScript,
         if action.skill in (Skill.LIEDOWN, Skill.SITDOWN) and _ASLEEP.search(_told_of(action, script))
     )
     worked = worked_pieces(actions, script, home) if home is not None else {}
-    return Role(Look.of(character), emotions, asleep, acted_captions(actions), _things(actions, worked), worked)
+    rests = resting_places(actions, home) if home is not None else {}
+    things = _things(actions, worked)
+    return Role(Look.of(character), emotions, asleep, acted_captions(actions), things, worked, rests)
 
 
 def _things(actions: Sequence[Action], worked: Mapping[int, Worked]) -> dict[int, InHand]:

@@ -147,6 +147,6 @@ def test_there_are_about_as_many_modules_as_were_planned() -> None:
     """No module was cut or joined for the number's sake: it is to be looked at when it leaves these bounds.
 
     About 380 and what matching, learned motion, physics with its policies, the cast, takes, films, USD, props, stories
-    played again, captions in words, deeds that are done with tools and themes in screenplay form need.
+    played again, captions in words, deeds done with tools, themes in screenplay form and films of rooms need.
     """
-    assert 300 <= len(modules()) <= 600, len(modules())
+    assert 300 <= len(modules()) <= 620, len(modules())

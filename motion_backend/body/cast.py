@@ -245,6 +245,16 @@ class Worked:
 
 
 @dataclass(frozen=True)
+class Rest:
+    """Where something small may lie that is in the hands in a keyframe, before and after."""
+
+    at: tuple[float, float, float]
+    """The point of a top, in the world, before which a hand would be."""
+    facing: float
+    """Yaw of whoever would reach there."""
+
+
+@dataclass(frozen=True)
 class Role:
     """Somebody seen acting: the look, what the face is to show, and what is in the hands."""
 
@@ -259,6 +269,8 @@ class Role:
     """What is named to be in the hands, by keyframe; where it is not, captions say."""
     worked: Mapping[int, Worked] = field(default_factory=dict)
     """What hands open, shut or switch, by keyframe."""
+    rests: Mapping[int, Rest] = field(default_factory=dict)
+    """Where what is in the hands lies before and after, by keyframe; nowhere where it is not named."""
 
 
 def acted_captions(actions: Sequence[Action]) -> dict[int, tuple[Skill, str]]:
@@ -270,6 +282,11 @@ def thing_from_dict(row: Mapping[str, Any]) -> InHand:
     """The inverse of `asdict`, once lists have come back for tuples."""
     at = tuple(row["at"]) if row["at"] is not None else None
     return InHand(row["thing"], row["hand"], at, row["on_top"], row["facing"])
+
+
+def rest_from_dict(row: Mapping[str, Any]) -> Rest:
+    """The inverse of `asdict`, once lists have come back for tuples."""
+    return Rest(tuple(row["at"]), row["facing"])
 
 
 def worked_to_dict(worked: Worked) -> dict[str, Any]:

@@ -191,19 +191,25 @@ class _Places:
         return known[0] if known else len(self.holders) - 1
 
     def _lying(self, moment: Moment) -> Lying:
-        """Before the hand, on what it is laid on: books and coats on their broadest sides, cups on their feet, turned
-        to who laid them."""
-        named, corners = moment.named, prop_shape(self.shape.shape).vertices.astype(np.float64)
-        at, yaw = (np.array(named.at), named.facing) if named is not None else (np.zeros(3), 0.0)
-        ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
-        flat = self.shape.flat or prop_table().ways[self.shape.way].flat
-        thin = np.ptp(corners[:, 2]) <= np.ptp(corners[:, 0])  # a coat is thin from side to side of how it hangs
-        y, z = (ahead, UP if thin else np.cross(UP, ahead)) if flat else (UP, -ahead)
-        turn = rotations.basis_to_quat(np.cross(y, z)[None], y[None], z[None])[0]
-        turned = rotations.rotate(turn, corners)
-        depth = float((turned @ ahead).min())
-        inward = max(BEFORE_HAND, -depth - OVER_RIM)
-        return Lying(at + inward * ahead - [0.0, float(turned[:, 1].min()), 0.0], turn)
+        """Where the hand of a moment lays it."""
+        named = moment.named
+        at, yaw = (named.at, named.facing) if named is not None else (None, 0.0)
+        return laid(self.shape, at or (0.0, 0.0, 0.0), yaw)
+
+
+def laid(shape: Called, at: tuple[float, float, float], yaw: float) -> Lying:
+    """Before a hand at a point, on what it is laid on: books and coats on their broadest sides, cups on their feet,
+    turned to who laid them."""
+    corners = prop_shape(shape.shape).vertices.astype(np.float64)
+    ahead = np.array([np.sin(yaw), 0.0, np.cos(yaw)])
+    flat = shape.flat or prop_table().ways[shape.way].flat
+    thin = np.ptp(corners[:, 2]) <= np.ptp(corners[:, 0])  # a coat is thin from side to side of how it hangs
+    y, z = (ahead, UP if thin else np.cross(UP, ahead)) if flat else (UP, -ahead)
+    turn = rotations.basis_to_quat(np.cross(y, z)[None], y[None], z[None])[0]
+    turned = rotations.rotate(turn, corners)
+    depth = float((turned @ ahead).min())
+    inward = max(BEFORE_HAND, -depth - OVER_RIM)
+    return Lying(np.array(at) + inward * ahead - [0.0, float(turned[:, 1].min()), 0.0], turn)
 
 
 def in_hand(shape: Called, hand: str) -> Grip:

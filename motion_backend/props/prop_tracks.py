@@ -24,6 +24,7 @@ from motion_backend.props.fixture_tracks import fixture_tracks
 from motion_backend.props.prop_frames import Flags, Moment, PropTrack, growth, runs_of, spans_of
 from motion_backend.props.prop_hands import Hands
 from motion_backend.props.prop_table import Grip, Held, prop_table, shown_as
+from motion_backend.props.resting_things import resting_things
 from motion_backend.rotations import Array
 
 Key = tuple[Held, str]
@@ -51,7 +52,8 @@ def prop_tracks(motion: Motion, role: Role) -> tuple[PropTrack, ...]:
     if not len(motion) or not (moments or role.worked):
         return ()
     hands = Hands.of(motion)
-    found = [*_in_hand(hands, moments, _stays(motion, role)), *fixture_tracks(hands, motion, role)]
+    held = _in_hand(hands, moments, _stays(motion, role))
+    found = [*held, *resting_things(motion, role, held), *fixture_tracks(hands, motion, role)]
     return tuple(sorted(found, key=lambda track: track.start))
 
 

@@ -39,6 +39,8 @@ HIDDEN, BLOCKED, AT_WINDOW, INDOORS = 2.5, 3.0, 2.0, 0.3
 """What counts how much: a body that is hidden, an eye within furniture, a curtain, an eye in the body's room."""
 HELD = 0.15
 """And to have what is held on the camera's side of the body."""
+WORKED_AT = 0.12
+"""What a body is as near to is part of what it does (metres)."""
 CLOSE = 0.4
 """Metres in front of an eye that are free of furniture."""
 NEAR_HAND, IN_IT, ABOVE_HAND = 0.25, 0.08, 0.08
@@ -179,12 +181,16 @@ class Sight:
     """and those that each piece stands tall against."""
 
     @staticmethod
-    def at(home: Home, place: tuple[float, float], reach: float) -> Sight:
-        """Around a place [x, z], with the furniture within reach (metres)."""
+    def at(home: Home, place: tuple[float, float], reach: float, body: Array | None = None) -> Sight:
+        """Around a place [x, z], with the furniture within reach (metres); what joints (N, 3) of a `body` are at stays
+        where a wall behind it is left away."""
         there = (o for o in home.objects if o.category not in HUNG)  # which is left away before a body
         near = tuple(o for o in there if np.hypot(o.position[0] - place[0], o.position[2] - place[1]) < reach)
         sides = tuple(side for wall in home.walls if (side := Side.of(wall, home)) is not None)
-        against = tuple(tuple(side for side in sides if side.bears(placed)) for placed in near)
+        against = tuple(
+            () if body is not None and is_at(placed, body) else tuple(side for side in sides if side.bears(placed))
+            for placed in near
+        )
         return Sight(home, home.room_at(place), near, Boxes.of(near), sides, against)
 
     def score(self, camera: Camera, poses: Array) -> float:
@@ -234,6 +240,13 @@ class Sight:
     def _at_a_window(self, eye: Array) -> bool:
         """Whether it is so near to a wall, on its room's side, that curtains may hang before it."""
         return any(side.faces(eye[[0, 2]]) and side.distance(eye[[0, 2]]) < CURTAIN for side in self.sides)
+
+
+def is_at(placed: Placed, points: NDArray[np.floating]) -> bool:
+    """Whether any of the points (N, 3) of a body are at a piece of furniture."""
+    here, half = placed.to_local(points.astype(np.float64)), np.array(placed.size) / 2
+    away = np.maximum(np.abs(here - [0.0, half[1], 0.0]) - half, 0.0)
+    return bool(np.linalg.norm(away, axis=1).min() < WORKED_AT)
 
 
 def _side_of(placed: Placed, hand: Array) -> tuple[float, Array]:

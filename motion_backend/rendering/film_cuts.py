@@ -260,7 +260,7 @@ class _Finder:
         first, last = found
         near = np.linalg.norm(self.joints[first:last, HANDS] - self.joints[first:last, [_HEAD]], axis=-1) < TO_HEAD
         hands = tuple(np.asarray(HANDS)[near.mean(axis=0) > 0.4].tolist())
-        gesture = None if hands else self._gesture(first, last)
+        gesture = None if hands or self._lies(first, last) else self._gesture(first, last)
         return Framing(first, last, Subject.FACE, gesture.hands if gesture is not None else hands, of_face=True)
 
     def _holding(self, start: int, stop: int, seconds: float) -> Iterator[Framing]:

@@ -86,9 +86,9 @@ class FilmSet:
             self.extensions[room] = SetExtension.of(self.home, room)
         return self.extensions[room]
 
-    def sight(self, place: Point3) -> Sight:
-        """What hides a body at a place."""
-        return Sight.at(self.home, (place[0], place[2]), REACH)
+    def sight(self, place: Point3, poses: Array) -> Sight:
+        """What hides a body at a place, in some poses (P, 22, 3)."""
+        return Sight.at(self.home, (place[0], place[2]), REACH, poses.reshape(-1, 3))
 
     def _ground(self, camera: Camera) -> Solid:
         x, _, z = camera.target

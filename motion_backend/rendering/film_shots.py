@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
 EYES: Final = (1.2, 1.45, 1.7)
 """Metres that a camera stands high: at the eyes of who sits, of who stands, and of who looks over low furniture."""
+OVER_TOPS: Final = 2.0
+"""The same where hands are at something: over what stands on a top before them."""
 LEVEL: Final = (0.12, 3.0)
 """From how many radians from above on it counts to look down, and what each of those counts."""
 CLOSE_PITCHES: Final = (0.06, 0.30), (0.06, 0.30, 0.60, 0.95)
@@ -120,8 +122,9 @@ STEEPEST: Final = 0.45
 """The sine of the angle from above at which a camera looks at the whole of a body, at most."""
 EXACT: Final = 0.02
 """Metres that what was just within a picture may be beyond, where it is turned."""
-TRIES: Final = 12
-"""Views of a shot of which pictures are looked at."""
+TRIES, HEIGHTS = 12, 2
+"""Views of a shot of which pictures are looked at, and how many of them at most from one side: one side may show what
+hides from the others."""
 
 
 @dataclass(frozen=True)
@@ -253,16 +256,18 @@ class _Director:
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         way = rotations.rotate(self.turns[frames, 0], np.array([0.0, 0.0, 1.0]))
-        sight = self.set.sight(_middle(points))
+        sight = self.set.sight(_middle(points), poses)
         front = self._front(framing, sight)
         before_it = front is not None or there is not None
         widest = BEYOND if before_it else PROFILE if framing.deed and not framing.gesture else QUARTER
         yaws = _yaws(front if front is not None or there is None else there.front)
         lying = rotations.rotate(self.turns[frames, 0], np.array([0.0, 1.0, 0.0]))
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])), yaws)
+        eyes = EYES if framing.deed is None or framing.gesture else (*EYES, OVER_TOPS)
         scored = []
-        for eye in EYES:
-            for index, yaw in enumerate(yaws.tolist()):
+        for index, yaw in enumerate(yaws.tolist()):
+            from_there = []
+            for eye in eyes:
                 camera = _standing(yaw, eye, points, self.aspect, NEAREST)
                 score = float(liked[index]) + sight.score(camera, poses) - _down(camera)
                 score += INSIDE * sight.indoors(camera)
@@ -279,7 +284,8 @@ class _Director:
                 told = sight.shows(camera, there.corners, there.side) if there is not None else 1.0
                 score += TO_COUNTERPART * told - self._broken(camera, before, start)
                 tells = told >= SHOWN or (there is not None and there.kind is Kind.MIRROR)
-                scored.append(_View(score, camera, points, tells))
+                from_there.append(_View(score, camera, points, tells))
+            scored += _sorted(from_there)[:HEIGHTS]
         return _sorted(_frontal(scored, front))
 
     def _reached(self, framing: Framing) -> Array:
@@ -347,7 +353,7 @@ class _Director:
         held = [prop_points(self.props, frame) for frame in frames.tolist()] if close.hands else []
         points = np.concatenate([_head(poses, turns), hands, *held])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
-        sight = self.set.sight(_middle(points))
+        sight = self.set.sight(_middle(points), poses)
         front = None if close.of_face else self._front(close, sight)
         tall = turns[:, 0 if close.of_face else INDEX["head"]]  # a head may hang between the knees of who sits
         upright = rotations.rotate(tall, np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES

@@ -15,7 +15,7 @@ from motion_backend.body.character_mesh import build_character
 from motion_backend.body.face_track import face_track
 from motion_backend.body.skinning import SkinnedMesh, skin
 from motion_backend.props import PropTrack, prop_tracks
-from motion_backend.rendering.camera import HUNG, Boxes
+from motion_backend.rendering.camera import HUNG, Boxes, is_at
 from motion_backend.rendering.rasterizer import Camera
 from motion_backend.rendering.renderer import Solid
 from motion_backend.rotations import Array
@@ -34,8 +34,6 @@ ON_WALLS, SHADOWLESS = ("wall", "door", "window"), ("wall", "door", "window", "c
 """How the names of meshes begin that are a wall, in one or on one, and of those that would darken a whole room."""
 
 
-WORKED_AT = 0.12
-"""What a body is as near to is part of what it does (metres)."""
 REACH = 4.5
 """What is farther from the body, or from what a camera looks at, is of no picture of it (metres)."""
 
@@ -139,9 +137,7 @@ class Borne:
 
     def is_worked_at(self, points: NDArray[np.floating]) -> bool:
         """Whether any of the points (N, 3) of a body are at it."""
-        here, half = self.placed.to_local(points.astype(np.float64)), np.array(self.placed.size) / 2
-        away = np.maximum(np.abs(here - [0.0, half[1], 0.0]) - half, 0.0)
-        return bool(np.linalg.norm(away, axis=1).min() < WORKED_AT)
+        return is_at(self.placed, points)
 
 
 @dataclass(frozen=True)

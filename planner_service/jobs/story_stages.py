@@ -295,6 +295,7 @@ class Maker:
         own = [_own(one, index, len(actions)) for index, one in enumerate(taken)]
         summary |= {"asleep": sorted(role.asleep), "reused": len(own)}
         summary["things"] = [asdict(thing) | {"keyframe": index} for index, thing in role.things.items()]
+        summary["rests"] = [asdict(rest) | {"keyframe": index} for index, rest in role.rests.items()]
         summary["worked"] = [worked_to_dict(one) | {"keyframe": index} for index, one in role.worked.items()]
         if origin:
             summary["take"] = take_number(story.store.engine, story.id)

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Any, Final
 
-from motion_backend.body.cast import Look, Role, thing_from_dict, worked_from_dict
+from motion_backend.body.cast import Look, Role, rest_from_dict, thing_from_dict, worked_from_dict
 from motion_backend.motion import FPS, Character, Emotion, Motion, Skill, join
 from planner_service.jobs.story_stages import STAGES, read_segments
 from planner_service.narration.told import Told
@@ -156,7 +156,8 @@ def role_in(record: Record) -> Role:
     captions = {row["index"]: (Skill(row["skill"]), caption) for row, caption in rows}
     things = {row["keyframe"]: thing_from_dict(row) for row in made.get("things", ())}
     worked = {row["keyframe"]: worked_from_dict(row) for row in made.get("worked", ())}
-    return Role(look, emotions, frozenset(made.get("asleep", ())), captions, things, worked)
+    rests = {row["keyframe"]: rest_from_dict(row) for row in made.get("rests", ())}
+    return Role(look, emotions, frozenset(made.get("asleep", ())), captions, things, worked, rests)
 
 
 def _links(story_id: str) -> dict[str, str]:
