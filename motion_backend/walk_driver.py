@@ -168,8 +168,8 @@ class WalkDriver:
         set_out = self._set_out(walk, stretch, led)
         skeleton, past, places = walk.ruled.skeleton, set_out.past, set_out.places
         made = past.then(set_out.first)
-        for found in set_out.windows:
-            made = made.then(found)
+        for window in set_out.windows:
+            made = made.then(window)
         made = in_mood(made, walk.part.action, len(past))
         root, local, contacts = held(made.root * skeleton.scale, made.local, skeleton, len(past))
         motion = Motion(
