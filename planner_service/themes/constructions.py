@@ -55,6 +55,7 @@ class ConstructionWords:
     """data/constructions.toml."""
 
     events: dict[str, str]
+    feelings: dict[str, str]
     words: dict[str, Words]
     limb: tuple[LimbRow, ...]
 
@@ -164,6 +165,13 @@ def _of_event(clause: Clause) -> list[Clause]:
     falls = event == "sleep" and not clause.denied
     words = ("fall", "asleep") if falls else (event, "his", "head") if event == "shake" else (event,)
     return [replace(_meaning(clause, words, who), unable=clause.unable or (clause.denied and event == "sleep"))]
+
+
+def _of_feeling(clause: Clause) -> list[Clause]:
+    """What comes over somebody is how they are: "fear grips her", "anger rises in him"."""
+    means = _known().feelings.get(lemma_of(_head(clause.subject)))
+    who = _undergoer(clause)[0] if means and clause.verb in _words("overcoming") else ""
+    return [_meaning(clause, (means or "").split(), who)] if who else []
 
 
 def _of_limbs(clause: Clause) -> list[Clause]:
@@ -281,6 +289,35 @@ def _held(clause: Clause) -> list[Clause]:
     if not is_so:
         return []
     return [_meaning(clause, (clause.verb, *clause.subject.split(), *_after(clause)))]
+
+
+def _noted(clause: Clause) -> list[Clause]:
+    """Notes leave out articles: "throws phone" is throws the phone, "sits on floor" on the floor."""
+    words = [token.low for token in tokens_of(clause.text) if token.text[:1].isalnum()]
+    start = next((at for at, word in enumerate(words) if verb_of(word) == clause.verb), None)
+    if start is None or "," in clause.text or not (grammar().marks - {"to"}).isdisjoint(words):
+        return []
+    written: list[str] = []
+    for at, word in enumerate(words[start + 1 :], start + 1):
+        if _wants_article(clause.verb, words[at - 1], word, (*words[at + 1 :], "")[0]):
+            written.append("the")
+        written.append(word)
+    return [_meaning(clause, (clause.verb, *written), clause.subject)] if "the" in written else []
+
+
+def _wants_article(verb: str, before: str, word: str, after: str) -> bool:
+    """Whether a noun that stands after a verb, its particle or a preposition is one thing, and has no article."""
+    known = grammar()
+    if verb in theme_words()["state_verbs"] | {"be"} or word in ("tv", "television"):
+        return False
+    one = word in kinds_of(word).get("NOUN", ()) or verb == "do"
+    thing = is_known(word) or word in things() or word in theme_words()["body"] | _words("sole")
+    eaten = lemma_of(word) in (*things_called("food"), *things_called("drink"))
+    led = before in _ON or verb_of(before) == verb or before in known.prepositions - _words("idle")
+    in_bed = word == "bed" and before in ("to", "in", "from", "of", "into")
+    limb = word in theme_words()["body"] and before in known.prepositions
+    noun_follows = is_noun(after) and (is_known(after) or after in things())
+    return one and thing and led and not (eaten or in_bed or limb or noun_follows)
 
 
 def _received(clause: Clause) -> list[Clause]:
@@ -423,6 +460,7 @@ def light_readings(lemmas: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
+    _of_feeling,
     _of_limbs,
     _of_event,
     _in_event,
@@ -434,4 +472,5 @@ _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
     _moved,
     _done_to,
     _by_event,
+    _noted,
 )

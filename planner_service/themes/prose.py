@@ -18,6 +18,7 @@ from planner_service.themes.lexicon import (
     participle,
     verb_of,
 )
+from planner_service.themes.outline import lines_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import names
 
@@ -44,13 +45,16 @@ _DECADE: Final = re.compile(r"\b(?:(?:early|mid|late)[- ])?([2-9])0s\b")
 _AGED: Final = re.compile(r"(?<=[A-Za-z]), (?P<age>(?:(?:early|mid|late)[- ])?[2-9]0s)(?P<mark>[,.])")
 _ABOUT: Final = ("twenty", "thirty", "forty", "fifty", "sixty", "seventy", "eighty", "ninety")
 _LABEL: Final = re.compile(
-    r"(?:(?<=^)|(?<=[.!?;] )|(?<=\n))(?:(?P<wish>goal|objective|aim|want|wants|need|motivation|task)"
+    r"(?:(?<=^)|(?<=[.!?;] )|(?<=\n))(?:(?P<wish>goal|objective|aim|want|wants|need|motivation"
+    r"|task(?=:.*\b(?:sub-?)?(?:steps|tasks):))"
     r"|(?P<who>(?:main )?character|protagonist|hero|heroine|who)|(?P<where>setting|location|place|where)"
     r"|(?P<left>genre|tone|style|mood|title|length|duration|rating)"
     r"|obstacles?|conflict|problem|stakes|resolution|ending|end|beginning|middle|twist|climax|plot|story|premise|logline"
-    r"|steps?|solution|answer|prompt|theme|idea|action|outcome|result|what happens|start|finally)"
+    r"|(?:sub-?)?(?:steps?|tasks?)|solution|answer|prompt|theme|idea|action|outcome|result|what happens|start|finally"
+    r"|intro|outro|trigger|loop|idle|sequence|cue|setup|payoff|event|reaction|response|beats?|shots?|first|second|third"
+    r"|then|next|last)"
     r"\s?: +(?P<told>[^.!?\n;]*[.!?;]?)",
-    re.IGNORECASE,
+    re.IGNORECASE | re.DOTALL,
 )
 """What an outline calls its parts: "Goal: leave the house"."""
 _ROLE: Final = re.compile(
@@ -99,7 +103,7 @@ _TEXTED: Final = {"u": "you", "ur": "your", "im": "I am", "ive": "I have"}
 @lru_cache(maxsize=256)
 def prose_of(theme: str) -> str:
     """The theme in sentences, which are read and told in its place."""
-    text = _SLUG.sub(_slug, _CUT.sub("", theme))
+    text = _SLUG.sub(_slug, _CUT.sub("", lines_of(theme)))
     text = _PERSON.sub(_brought_in, text)
     text = _AGED.sub(lambda one: f", {_about(one['age'])}{one['mark']}", text)
     text = _LOUD.sub(lambda one: one[0] if kinds_of(one[0]) else one[0].capitalize(), text)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from planner_service.themes.lexicon import grammar, lemma_of, participle, verb_of
+from planner_service.themes.lexicon import grammar, is_noun, lemma_of, participle, verb_of
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import Token, verb_place
 
@@ -165,7 +165,7 @@ def _verb_follows(words: Sequence[Token], at: int) -> bool:
             passed = any(one.low == "been" for one in words[at + 1 : at + 4])
             done = low != base or participle(base) == low  # "has not read"
             return bool(base) and done and (passed or not low.endswith("ing"))
-        return bool(base)
+        return bool(base) and (low == base or not is_noun(low))  # "does dishes"
     return False
 
 

@@ -113,3 +113,24 @@ def test_a_beat_keeps_the_themes_words_whatever_they_mean() -> None:
     (beat,) = beats_of("A yawn escapes Martha.")
     assert beat.text == "A yawn escapes Martha"
     assert (beat.beat.kind, beat.beat.who, beat.clause.text) == ("deed", "", "yawns")
+
+
+@for_each(
+    ("note", "plainly"),
+    (
+        ("NPC throws phone.", "throws the phone"),
+        ("Sits on floor.", "sits on the floor"),
+        ("Ann does dishes.", "does the dishes"),
+        ("Checks watch.", "checks the watch"),
+    ),
+)
+def test_notes_leave_out_articles(note: str, plainly: str) -> None:
+    assert [one.plainly for one in clauses_of_text(note)] == [plainly]
+
+
+@for_each(
+    "theme",
+    ("She goes to bed.", "He drinks coffee.", "She throws the phone.", "He saw it on television.", "She reads."),
+)
+def test_prose_leaves_out_none(theme: str) -> None:
+    assert [one.plainly for one in clauses_of_text(theme)] == [""]
