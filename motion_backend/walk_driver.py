@@ -17,6 +17,7 @@ import numpy as np
 from motion_backend import rotations
 from motion_backend.backend_protocol import BodyState, History, Part
 from motion_backend.furniture_clearance import arms_aside
+from motion_backend.metrics.contact_error import HAND_OVER
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import CLEARLY_IN, penetration
 from motion_backend.mocap.foot_hold import held
@@ -53,6 +54,8 @@ OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
 PASSES, BY = 0.25, 10
 """Metres from a place within which it is passed by, and frames in which that was just now."""
+STAYS: Final = 3
+"""Frames for which it is within reach of the place (`HAND_OVER`): one frame is no being there."""
 BEYOND: Final = 20
 """Frames that are made beyond such a place, so that a heel comes down by it: a step has some 16."""
 WAITS, EVERY, GENTLE = 12, 3, 0.8
@@ -168,8 +171,8 @@ class WalkDriver:
         set_out = self._set_out(walk, stretch, led)
         skeleton, past, places = walk.ruled.skeleton, set_out.past, set_out.places
         made = past.then(set_out.first)
-        for found in set_out.windows:
-            made = made.then(found)
+        for window in set_out.windows:
+            made = made.then(window)
         made = in_mood(made, walk.part.action, len(past))
         root, local, contacts = held(made.root * skeleton.scale, made.local, skeleton, len(past))
         motion = Motion(
@@ -301,12 +304,10 @@ class _Walk:
 
     def is_over(self, motion: Motion) -> bool:
         """Whether a motion has passed the place by which the way goes on."""
-        return self.stride is not None and self.part.goal is not None and self._passes(motion) < PASSES
-
-    def _passes(self, motion: Motion) -> float:
-        """How near a motion comes to the place (metres)."""
-        goal = np.asarray(self.part.goal, dtype=np.float64)
-        return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
+        if self.stride is None or self.part.goal is None:
+            return False
+        away = _away(motion.root_positions.astype(np.float64), np.asarray(self.part.goal, dtype=np.float64))
+        return float(away.min()) < PASSES and int((away < HAND_OVER).sum()) > STAYS
 
     def after_stretch(self, set_out: _SetOut, motion: Motion, beyond: Array) -> _Stretch:
         """How it goes on after a motion that ended as a heel came down, whose way is `beyond` (N, 2) then."""
@@ -471,13 +472,19 @@ def _steps_end(positions: Array, end: Array) -> list[int]:
     return [int(at) + 1 for at in landing[last::-1]]
 
 
+def _away(pelvis: Array, place: Array) -> Array:
+    """How far a pelvis (T, 3) is from a place (2,) on the floor. (T,) metres."""
+    return np.asarray(np.linalg.norm(pelvis[:, [0, 2]] - place, axis=1))
+
+
 def _landing_by(positions: Array, goal: Array) -> int | None:
     """The last frame of (T, 22, 3) in which a heel comes down as the body has just come by a place (2,)."""
-    near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < PASSES
+    away = _away(positions[:, 0], goal)
+    near, there = away < PASSES, np.cumsum(away < HAND_OVER)
     begun = max(int(np.argmax(near)) - BEYOND, 0)
     # Of strides about there alone: before a bend they are shorter.
     landing = [begun + int(at) for at in strides_landing(positions[begun:])]
-    landing = [at for at in landing if near[max(at - BY, 0) : at + 1].any()]
+    landing = [at for at in landing if near[max(at - BY, 0) : at + 1].any() and there[at] > STAYS]
     return landing[-1] if landing else None
 
 

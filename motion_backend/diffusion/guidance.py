@@ -31,6 +31,8 @@ Guide = Callable[[Tensor], Tensor]
 """Moves a clean guess (B, 14, 202), in metres and rotations, towards what it is to come to."""
 PULL: Final = 0.5
 """Share of what is left to the goal by which a guess is moved."""
+TINY: Final = 1e-6
+"""Metres that keep a walk which is off its way by nothing from dividing by it."""
 HOLD: Final = 0.8
 """The same of a pose that is to be held."""
 REACHES: Final = ("spine1", "spine2", "spine3", "collar", "shoulder", "elbow")
@@ -59,11 +61,11 @@ def towards(goal: Tensor, axes: tuple[int, ...], pull: float = PULL) -> Guide:
     return guide
 
 
-def along(way: Tensor, pull: float = PULL, order: int = 2) -> Guide:
+def along(way: Tensor, pull: float = PULL, order: int = 2, free: float = 0.0) -> Guide:
     """Guidance of a walk along a way (B, 14, 2) of the root, [x, z] in the heading frame.
 
     What it is off on the whole is taken away, a polynomial of that order from where it begins: with a parabola its sway
-    is its own, with more it follows bends.
+    is its own, with more it follows bends. Who is off by less than `free` metres is left alone.
     """
     share = torch.linspace(1 / way.shape[1], 1.0, way.shape[1])
     curves = torch.stack([share**power for power in range(1, order + 1)], dim=1)
@@ -71,7 +73,9 @@ def along(way: Tensor, pull: float = PULL, order: int = 2) -> Guide:
 
     def guide(guess: Tensor) -> Tensor:
         moved = guess.clone()
-        moved[..., [0, 2]] += pull * (fitted @ (way - guess[..., [0, 2]]))
+        off = fitted @ (way - guess[..., [0, 2]])
+        far = torch.linalg.vector_norm(off, dim=-1, keepdim=True)
+        moved[..., [0, 2]] += pull * off * (1 - free / far.clamp(min=max(free, TINY)))
         return moved
 
     return guide

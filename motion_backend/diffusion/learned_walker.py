@@ -23,6 +23,8 @@ from motion_backend.walk_generator import Ahead, Frames, Walker
 
 CAPTION: Final = "a person walks"
 """What all plain walks are called among others in what was learned from; how fast says the goal."""
+FREE: Final = 0.05
+"""Metres beside or behind its way at which a walk is pulled to it: people wander by as much."""
 KEYS: Final = slice(STRIDE - 1, None, STRIDE)
 """The frames of a window at 30 a second that it has at 10."""
 SEEDS: Final = 2**31
@@ -79,7 +81,7 @@ class LearnedWalker:
         goal = PelvisGoal(place)
         wish = Wish(CAPTION, goal, made_of=MadeOf.RECORDED, gait=self.gait)
         way = body.frame.inward(np.insert(ahead.places[KEYS], 1, 0.0, axis=1))[None, :, [0, 2]]
-        guide = along(torch.from_numpy(way.astype(np.float32)))
+        guide = along(torch.from_numpy(way.astype(np.float32)), free=FREE)
         poses = body.go_on(wish, [self.seed, self.made], guide).poses
         keys = Frames(poses.roots[0, HISTORY - 1 :], poses.local[0, HISTORY - 1 :])
         assert self._velocity is not None

@@ -25,8 +25,8 @@ LOST: Final = 0.15
 """Metres from its goal at which a pelvis is not brought there any more."""
 HOVERS: Final = 0.04
 """Metres over the floor at which a body floats whose plan stands."""
-SOME, DEEP = 4, 0.035
-"""Frames in which a body that floats, or is in furniture less than so many metres deep, is overlooked."""
+SOME, FEW, DEEP = 4, 2, 0.035
+"""Frames in which a body that floats is overlooked, and one that is in furniture less than so many metres deep."""
 SLIDES: Final = 8.0
 """Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
 
@@ -107,7 +107,7 @@ def _check_furniture(made: Motion, passage: PlannedPassage) -> int:
     obstacles, action = scene_of(passage.home).obstacles, passage.part.action
     own, planned = (penetration(Kinematics.of(motion), obstacles, action) for motion in (made, passage.plan))
     frames, most = int((own > CLEARLY_IN).sum()), WORSE * float((planned > CLEARLY_IN).sum())
-    if frames > most + SOME * (own.max() < DEEP):
+    if frames > most + FEW * (own.max() < DEEP):
         raise RefusedError(f"the {passage.phase} was up to {own.max():.2f} m deep in furniture")
     return max(frames - int(most), 0)
 

@@ -216,13 +216,16 @@ class _Body:
         frame = body.frame
         if passage.is_periodic:
             way = frame.inward(passage.way(done))[None, :, [0, 2]]
-            return along(torch.from_numpy(way.astype(np.float32)), *(CLOSELY if self.number >= OTHER else ()))
+            kept = along(torch.from_numpy(way.astype(np.float32)), *(CLOSELY if self.number >= OTHER else ()))
+            stood = _posed(passage, done, frame, passage.stopping(done))
+            return kept if stood is None else both(kept, stood)
         if passage.hand is not None:
             goal, left = passage.hand
             return reaching(frame.inward(goal[None])[0], left, passage.held(done))
         if not passage.is_seat:
             return None
-        held = self._held(passage, done, frame)
+        # Who rises leaves his pose by himself.
+        held = None if passage.kind is PartKind.RISE else _posed(passage, done, frame, passage.settled(done))
         if passage.due > done + LOOK:
             return held
         # A body that is pulled up faster than its legs stretch leaves the floor: then it rises by itself.
@@ -231,14 +234,6 @@ class _Body:
         place = frame.inward(passage.plan.root_positions[-1].astype(np.float64)[None])[:, axes]
         seated = towards(torch.from_numpy(place.astype(np.float32)), axes)
         return seated if held is None else both(seated, held)
-
-    def _held(self, passage: PlannedPassage, done: int, frame: HeadingFrame) -> Guide | None:
-        """The pose that a body comes to on its seat, as far as it has come to it; None where it has not begun to."""
-        shares = passage.settled(done)
-        if passage.kind is PartKind.RISE or not shares.any():
-            return None
-        pose, held = (torch.from_numpy(one.astype(np.float32)) for one in (passage.pose(done, frame), shares))
-        return posed(pose, held)
 
     def brought(self, passage: PlannedPassage, made: Frames) -> tuple[Frames, float]:
         """Frames with pelvis or hand at the goal at last, and how far it was. RefusedError where it was too far."""
@@ -265,6 +260,14 @@ class _Body:
         refuse_beyond(away, THRESHOLDS[Skill.TOUCH], passage)
         shares = held_shares(np.arange(len(made)), due, round(passage.part.hold * FPS))
         return wrist_brought(made, self.skeleton, side, shares[:, None] * (planned - wrist)), away
+
+
+def _posed(passage: PlannedPassage, done: int, frame: HeadingFrame, shares: Array) -> Guide | None:
+    """The pose of a plan in the window after `done` frames, held by shares (14,); None where it is held in none."""
+    if not shares.any():
+        return None
+    pose, held = (torch.from_numpy(one.astype(np.float32)) for one in (passage.pose(done, frame), shares))
+    return posed(pose, held)
 
 
 def _key_speed(past: Frames) -> tuple[Array, Array]:

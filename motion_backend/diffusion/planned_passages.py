@@ -32,6 +32,8 @@ from scene_graphs.home import Home
 
 WIDE: Final = 18
 """Frames beyond the ends of a way that count for its smoothness."""
+STOPPED, STOPS = 0.15, 24
+"""Metres a second at which who has walked stands, and frames in which he comes to it."""
 SURE: Final = 2
 """Frames from the last known one to the middle of the first new one at 10 a second, which frame numbers are of."""
 
@@ -137,6 +139,18 @@ class PlannedPassage:
     def settled(self, done: int) -> Array:
         """How far a pose is held by then in the new frames of the window after `done` frames. (14,)."""
         return np.ones(WINDOW - HISTORY) if self.since else eased(1 - (self.due - _keys(done)) / LOOK)
+
+    @property
+    def stops(self) -> bool:
+        """Whether it is a walk at whose end the body stands."""
+        if self.phase is not PhaseKind.WALK or self.onward is not None or len(self.plan) < 2:
+            return False
+        last = self.plan.root_positions[-2:, [0, 2]].astype(np.float64)
+        return float(np.linalg.norm(last[1] - last[0])) * FPS < STOPPED
+
+    def stopping(self, done: int) -> Array:
+        """How far a walk has come to its stand in the new frames of the window after `done` frames. (14,)."""
+        return eased(1 - (len(self.plan) - 1 - _keys(done)) / STOPS) if self.stops else np.zeros(WINDOW - HISTORY)
 
     def held(self, done: int) -> Array:
         """How far the hand is at its goal in the new frames of the window after `done` frames. (14,)."""

@@ -185,20 +185,20 @@ def test_a_way_that_bends_is_told_by_where_it_is_in_a_window() -> None:
 def test_a_stretch_ends_a_step_earlier_where_the_rules_would_come_into_furniture(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    after = walk_driver._Walk.after_stretch
     ends = []
     for deep in (0.0, 0.1):
-        depths = iter([deep])
-        monkeypatch.setattr(walk_driver._Stretch, "deep", property(lambda _, depths=depths: next(depths, 0.0)))
         stretches = list[int]()
-        after = walk_driver._Walk.after_stretch
 
-        def counted(*told: Any, after: Any = after, stretches: list[int] = stretches) -> Any:
+        def tried(*told: Any, deep: float = deep, stretches: list[int] = stretches) -> Any:
             stretches.append(len(told[2]))
-            return after(*told)
+            found = after(*told)
+            if len(stretches) == 1 and found.onward is not None:
+                found.onward.__dict__["deep"] = deep
+            return found
 
-        monkeypatch.setattr(walk_driver._Walk, "after_stretch", counted)
+        monkeypatch.setattr(walk_driver._Walk, "after_stretch", tried)
         across_the_room("diffusion")
-        monkeypatch.setattr(walk_driver._Walk, "after_stretch", after)
         ends.append(stretches)
     assert ends[0][0] == ends[1][0]
     assert 8 < ends[1][0] - ends[1][1] < 30

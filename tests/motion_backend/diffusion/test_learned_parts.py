@@ -206,3 +206,13 @@ def test_who_sits_down_jumps_nowhere_between_windows() -> None:
     changes = np.linalg.norm(np.diff(wrists.astype(np.float64), 2, axis=0), axis=-1).max(axis=1) * seated.fps
     border = slice(LOOK - 3, LOOK + 4)
     assert changes[border].max() < 1.0
+
+
+def test_who_comes_to_a_stand_stands_upright_on_straight_legs() -> None:
+    ((motion, _),) = acted(Action(Skill.LOCO, "walk to the shelf", Emotion.NEUTRAL, goal=(3.2, 1.0)))
+    assert motion.phases[-1].backend == "diffusion"
+    places = motion.joint_positions()[-1].astype(np.float64)
+    for side in ("left", "right"):
+        hip, knee, ankle = (places[INDEX[f"{side}_{joint}"]] for joint in ("hip", "knee", "ankle"))
+        straight = np.linalg.norm(hip - ankle) / (np.linalg.norm(hip - knee) + np.linalg.norm(knee - ankle))
+        assert straight > 0.985
