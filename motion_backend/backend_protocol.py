@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from motion_backend import rotations
 from motion_backend.contact_goals import contact_goals
-from motion_backend.motion import FPS, Action, Character, ContactGoal, Motion, Posture
+from motion_backend.motion import FPS, Action, Character, ContactGoal, Motion, Posture, Reaction
 from motion_backend.rotations import Array
 from motion_backend.skeleton import build_skeleton
 from scene_graphs.affordances.affordances import Spot, spot_from_dict, spot_to_dict
@@ -61,11 +61,13 @@ class Part:
     """The yaw to end with; None: any."""
     hold: float = 0.0
     """Seconds to stay: hold, and the hand of reach."""
+    reaction: Reaction | None = None
+    """What a hold is for: something happens, wherever the body is by then; None where it does what the action says."""
 
     @property
     def contacts(self) -> tuple[ContactGoal, ...]:
         """What is to be touched, sat or lain on (SIMS 3.3): none on the way there, nor in getting off."""
-        if self.kind in (PartKind.SIT, PartKind.LIE, PartKind.REACH, PartKind.HOLD):
+        if self.reaction is None and self.kind in (PartKind.SIT, PartKind.LIE, PartKind.REACH, PartKind.HOLD):
             return contact_goals(self.action)
         return ()
 

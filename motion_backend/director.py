@@ -10,6 +10,7 @@ import logging
 from collections import Counter
 from collections.abc import Generator, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -17,7 +18,19 @@ from motion_backend.backend_protocol import BodyState, MotionBackend, Part, Part
 from motion_backend.backends import DEFAULT_BACKEND, load_backend
 from motion_backend.contact_goals import contact_goals
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.motion import Action, Character, Emotion, Motion, Note, Phase, PhaseKind, Posture, Skill, join
+from motion_backend.motion import (
+    Action,
+    Character,
+    Emotion,
+    Motion,
+    Note,
+    Phase,
+    PhaseKind,
+    Posture,
+    Reacts,
+    Skill,
+    join,
+)
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import build_skeleton
 from motion_backend.state_machine import ENDS, parts_of, shortfall, time_limit
@@ -178,7 +191,7 @@ def _entering(first: Action) -> Action:
 def _unseen(home: Home, first: Action, standing: BodyState) -> BodyState:
     """As the default backend has got there, which nobody sees; standing still where it cannot."""
     backend, state = load_backend(DEFAULT_BACKEND), standing
-    parts = parts_of(first, Posture.STANDING)
+    parts = parts_of(replace(first, reacts=()), Posture.STANDING)
     for index, part in enumerate(parts[:-1]):
         motion, state = _advance(backend, Request(home, part, parts[index + 1 :], state))
         if not motion.completed:
@@ -255,8 +268,10 @@ def _labelled(motion: Motion, part: Part, backend: MotionBackend, fallback: str,
     if not phases and len(motion):
         phases = (Phase(PHASE_OF[part.kind], 0, len(motion)),)
     # A backend may say itself who made a phase of it.
+    reacts: Reacts | Literal[""] = part.reaction.how if part.reaction is not None else ""
     phases = tuple(
-        replace(phase, backend=phase.backend or backend.name, fallback=phase.fallback or fallback) for phase in phases
+        replace(phase, backend=phase.backend or backend.name, fallback=phase.fallback or fallback, reacts=reacts)
+        for phase in phases
     )
     return replace(motion, phases=phases, completed=not why, reason=why)
 

@@ -5,9 +5,10 @@ Arrays are float32, Y up, metres, seconds, quaternions xyzw; T frames at `fps`; 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,21 @@ FPS = 30
 
 Does = Literal["open", "close", "into", "on", "off"]
 """What is done to a piece: opened, shut, opened for as long as a hand is at it, switched on or off."""
+
+
+Reacts = Literal["start", "notice", "search"]
+"""How a body takes what happens: it starts and looks there, only looks there, or looks about and finds nobody."""
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """What a body does at something that happens, in whatever posture it is, before or after what it does itself."""
+
+    how: Reacts
+    at: str = ""
+    """Where that is: "door", "window" or a piece of furniture; empty: whatever door is nearest."""
+    after: bool = False
+    """Whether it happens once the action is done; otherwise before it begins."""
 
 
 class Skill(StrEnum):
@@ -115,6 +131,8 @@ class Phase:
     """Who made it; empty where nobody knows."""
     fallback: str = ""
     """Why another backend than the one asked for made it; empty where it was that one."""
+    reacts: Reacts | Literal[""] = ""
+    """How something that happens is taken in it; empty where nothing is."""
 
 
 @dataclass(frozen=True)
@@ -191,6 +209,42 @@ RISINGS: Final = (Skill.STANDUP, Skill.GETUP)
 
 
 @dataclass(frozen=True)
+class Handle:
+    """What a hand takes along that opens or shuts a door or a drawer: about an upright hinge, or straight out."""
+
+    does: Does
+    shut: tuple[float, float, float]
+    """Where it is while that is shut, in the world."""
+    hinge: tuple[float, float]
+    """[x, z]."""
+    turn: float = 0.0
+    """About +Y, from there to as far as it is opened (radians)."""
+    way: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """The same of a drawer (metres)."""
+    front: int = 0
+    """Which of the piece's fronts that is."""
+    share: float = 1.0
+    """How far open that is, of as far as it goes."""
+
+    @staticmethod
+    def from_dict(row: Mapping[str, Any] | None) -> Handle | None:
+        """The inverse of `asdict`, also once lists have come back for tuples."""
+        plain: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value for name, value in (row or {}).items()
+        }
+        return Handle(**plain) if plain else None
+
+    def at(self, shares: NDArray[np.floating] | float) -> NDArray[np.float64]:
+        """Where it is at shares (...) of its way, 0 shut and 1 opened. (..., 3)."""
+        shares = np.asarray(shares, dtype=np.float64)
+        x, y, z = self.shut
+        aside, ahead = x - self.hinge[0], z - self.hinge[1]
+        cos, sin = np.cos(self.turn * shares), np.sin(self.turn * shares)
+        places = [self.hinge[0] + cos * aside + sin * ahead, 0 * shares + y, self.hinge[1] + cos * ahead - sin * aside]
+        return np.asarray(np.stack(places, axis=-1) + shares[..., None] * np.array(self.way))
+
+
+@dataclass(frozen=True)
 class Action:
     """One thing to do, grounded in the home: what a backend gets for one keyframe (SIMS 3.4, Eq. 6)."""
 
@@ -225,6 +279,10 @@ class Action:
     begins: tuple[float, float, float] | None = None
     """Where the body stands and looks, [x, z, yaw], before the first frame, if the words say: at the door that it has
     come in by. So only of the first action."""
+    reacts: tuple[Reaction, ...] = ()
+    """What happens besides, and is reacted to before it or after it."""
+    handle: Handle | None = None
+    """What the hand takes along; of who leaves the home, that of the door which is opened on the way."""
     lacks: str = ""
     """What the home lacks for it, and what is done instead (`Note.words`); empty where it lacks nothing."""
 

@@ -86,7 +86,18 @@ def parts_of(
     action: Action, posture: Posture, place: tuple[float, float] | None = None, rest: Spot | None = None
 ) -> tuple[Part, ...]:
     """All that a body in a posture does for an action, in order (Eq. 6); `place` is where it stands, where known, and
-    `rest` what it sits or lies on: one lies down there from sitting, sits up from lying, or rests in another way."""
+    `rest` what it sits or lies on: one lies down there from sitting, sits up from lying, or rests in another way. What
+    happens before it or after it is reacted to there."""
+    before, after = (
+        tuple(Part(PartKind.HOLD, action, reaction=one) for one in action.reacts if one.after is later)
+        for later in (False, True)
+    )
+    return (*before, *_own_parts(action, posture, place, rest), *after)
+
+
+def _own_parts(
+    action: Action, posture: Posture, place: tuple[float, float] | None, rest: Spot | None
+) -> tuple[Part, ...]:
     if action.already and rest is not None and rest == action.spot:
         return (_part(PartKind.HOLD, action, place),)
     if goes_on_resting(posture, action, rest) or (
@@ -97,6 +108,10 @@ def parts_of(
     if action.skill is Skill.LOCO and action.goal is None:
         return (*rising, Part(PartKind.HOLD, action, hold=action.hold))
     stands = (Part(PartKind.HOLD, action, hold=action.stands),) if action.stands > 0 else ()
+    if action.skill is Skill.LOCO and action.handle is not None and action.spot is not None:
+        # Who leaves opens the door first.
+        to = Part(PartKind.WALK, action, action.spot.standing, action.spot.approach)
+        return (*rising, to, Part(PartKind.REACH, action), _part(PartKind.WALK, action, None), *stands)
     if action.skill in RISINGS:
         return (*rising, *(stands or (Part(PartKind.HOLD, action, hold=STOOD if rising else STOOD_ALREADY),)))
     return (*rising, *(_part(kind, action, place) for kind in ENTERING[action.skill]), *stands)

@@ -7,7 +7,7 @@ to the place, the stop and the turn that the part asks for. Every phase says who
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final, Protocol
@@ -16,8 +16,9 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import BodyState, History, Part
+from motion_backend.furniture_clearance import arms_aside
 from motion_backend.metrics.joint_trajectories import Kinematics
-from motion_backend.metrics.penetration import penetration
+from motion_backend.metrics.penetration import CLEARLY_IN, penetration
 from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Action, Character, Emotion, Motion, Phase, PhaseKind, join
 from motion_backend.procedural.backend import ProceduralBackend
@@ -27,8 +28,8 @@ from motion_backend.procedural.walk.stride import Stride
 from motion_backend.procedural.walk.walk_styles import Walk, style_of, walk_style
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
-from motion_backend.skeleton import INDEX
-from motion_backend.stride_takeover import ARMS_HALF_LIFE, joined, stride_of, strides_landing
+from motion_backend.skeleton import INDEX, build_skeleton
+from motion_backend.stride_takeover import ARMS_HALF_LIFE, ONSET, joined, stride_of, strides_landing
 from motion_backend.walk_generator import Frames, WalkGenerator, Way, windows, yaw_of
 from scene_graphs.home import Home
 
@@ -50,12 +51,15 @@ LATER: Final = 12
 """Frames of its way beyond the stretch that a generator is to walk, in which its last step may end."""
 OFF: Final = 0.2
 """Metres beside its way at which a generator's body has lost it."""
-PASSES, BY = 0.2, 10
+PASSES, BY = 0.25, 10
 """Metres from a place within which it is passed by, and frames in which that was just now."""
 BEYOND: Final = 20
 """Frames that are made beyond such a place, so that a heel comes down by it: a step has some 16."""
-DEEPER: Final = 0.02
-"""Metres by which a generator's body may be deeper in furniture than the procedural one."""
+WAITS, EVERY, GENTLE = 12, 3, 0.8
+"""Frames that a generator may wait to take over, how often it is tried in them, and metres a second from frame to frame
+by which a joint changes its speed in a stride: who takes over in another phase of it flings a foot."""
+EARLIER: Final = 5
+"""Steps that are tried for the last one of a stretch, from the farthest one back, while the rest is in furniture."""
 CARRIAGE_S: Final = 0.5
 """Seconds in which a mood's bend of trunk and head comes and goes."""
 _BENT: Final = {"spine1": 1 / 3, "spine2": 1 / 3, "spine3": 1 / 3}
@@ -107,28 +111,26 @@ class WalkDriver:
         index, made = state.index, list[Motion]()
         style, why = style_of(part.action), unlike_people(part.action)
         least = 0
+        walk = _Walk.of(home, part, tuple(upcoming), state, style)
         for _ in range(MOST):
-            walk = _Walk(home, part, tuple(upcoming), state, style, *ruled(home, part, upcoming, state))
             stretch = None if why else plain_stretch(walk.ruled, self.generator.slowest, least)
             if not walk.ruled.completed or stretch is None:
                 why = why or (TOO_SHORT if not made else STARTS_AND_STOPS)
                 break
-            start = walk.ruled.part(0, stretch[0])
-            led = self._acted(walk, stretch[0], STARTS_AND_STOPS) if stretch[0] else None
-            history, motion, beyond = self._stretch(walk, stretch, led)
-            if len(motion) < LEAST and led is not None:
-                led = by_rules(start, STARTS_AND_STOPS)
-                history, motion, beyond = self._stretch(walk, stretch, led)
-            if len(motion) < LEAST:
+            lead = min(stretch[0] + WAITS, stretch[1] - SHORTEST) if stretch[0] else 0
+            led = self._acted(walk, lead, STARTS_AND_STOPS) if lead else None
+            found = self._stretch(walk, stretch, led)
+            if found is None and led is not None:
+                led = by_rules(walk.ruled.part(0, lead), STARTS_AND_STOPS)
+                found = self._stretch(walk, stretch, led)
+            if found is None:
                 why = f"{self.generator.name} finds no room"
                 break
-            made += [led, motion] if led is not None else [motion]
-            state = replace(state, history=history.followed_by(motion))
-            if walk.is_over(motion):
-                return join(made), replace(_in_stride(state, walk, beyond), index=index + 1)
-            state, least, why = _in_stride(state, walk, walk.to_goal(beyond)), AGAIN, ""
+            made += [led.part(0, found.start), found.motion] if led is not None else [found.motion]
+            if found.onward is None:
+                return join(made), replace(found.state, index=index + 1)
+            walk, least, why = found.onward, AGAIN, ""
         else:
-            walk = _Walk(home, part, tuple(upcoming), state, style, *ruled(home, part, upcoming, state))
             why = STARTS_AND_STOPS
         if not len(walk.ruled) and not made:
             return walk.ruled, walk.after
@@ -157,23 +159,19 @@ class WalkDriver:
         beyond = walk.way[_nearest(walk.way, places[last, 0][[0, 2]]) + 1 :]
         return motion, _in_stride(replace(walk.after, history=walk.state.history.followed_by(motion)), walk, beyond)
 
-    def _stretch(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> tuple[History, Motion, Array]:
-        """What came before, the generator's frames, feet held and ending as a heel comes down, and the way (N, 2) left.
+    def _stretch(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> _Stretch | None:
+        """A stretch of a walk by the generator, feet held, that ends as a heel comes down; None where it finds no room.
 
-        `led` is what leads up to them. They end before the body would be in furniture, or beside its way.
+        `led` is what leads up to it. It ends before the body would be in furniture, or beside its way, and a step
+        earlier where the procedural body would come into furniture in the stride that it takes over.
         """
-        skeleton, (start, stop), before = walk.ruled.skeleton, stretch, walk.state.history
-        history = before.followed_by(led) if led is not None else before
-        scale, step = skeleton.scale, walk.hurry(stretch, self.generator.pace)
-        places = _hastened(walk.way[start:], step)
-        stop = start + max(int((stop - start) / step), 1)
-        past = Frames(history.root_positions / scale, history.local_rotations)
-        rng = np.random.default_rng([walk.state.seed, walk.state.index, len(history), start])
-        made, way = past, Way(places[: stop - start + LATER] / scale)
-        for found in windows(self.generator.begin(past, rng), past, way):
+        set_out = self._set_out(walk, stretch, led)
+        skeleton, past, places = walk.ruled.skeleton, set_out.past, set_out.places
+        made = past.then(set_out.first)
+        for found in set_out.windows:
             made = made.then(found)
         made = in_mood(made, walk.part.action, len(past))
-        root, local, contacts = held(made.root * scale, made.local, skeleton, len(past))
+        root, local, contacts = held(made.root * skeleton.scale, made.local, skeleton, len(past))
         motion = Motion(
             root_positions=root[len(past) :].astype(np.float32),
             local_rotations=local[len(past) :].astype(np.float32),
@@ -181,12 +179,76 @@ class WalkDriver:
             skeleton=skeleton,
             actions=np.full(len(root) - len(past), walk.part.action.keyframe, dtype=np.int32),
         )
+        motion = arms_aside(motion, walk.part, scene_of(walk.home).obstacles)
         body = Kinematics.of(motion)
-        free = walk.free(body)
-        count = _steps_end(body.positions[:free], places[min(stop - start, len(places) - 1)]) + 1 if free else 0
-        motion = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
-        gone = _nearest(places[: stop - start + LATER], root[len(past) + count - 1, [0, 2]]) if count else 0
-        return history, motion, places[gone + 1 :]
+        end, found = places[min(set_out.frames, len(places) - 1)], list[_Stretch]()
+        for count in _steps_end(body.positions[: walk.free(body)], end)[:EARLIER]:
+            if count < LEAST:
+                break
+            taken = replace(motion.part(0, count), phases=(Phase(PhaseKind.WALK, 0, count, self.generator.name),))
+            gone = _nearest(places[: set_out.frames + LATER], root[len(past) + count - 1, [0, 2]])
+            found.append(walk.after_stretch(set_out, taken, places[gone + 1 :]))
+            if found[-1].deep <= max(walk.deep, CLEARLY_IN):
+                break
+        return min(found, key=lambda one: max(one.deep, CLEARLY_IN), default=None)
+
+    def _set_out(self, walk: _Walk, stretch: tuple[int, int], led: Motion | None) -> _SetOut:
+        """The generator's first window of a stretch: after as much of what leads up to it as lets it fling no joint."""
+        before, scale, found = walk.state.history, walk.ruled.skeleton.scale, list[_SetOut]()
+        starts = range(stretch[0], len(led) + 1, EVERY) if led is not None else [stretch[0]]
+        step = walk.hurry(stretch, self.generator.pace)
+        for start in starts:
+            history = before.followed_by(led.part(0, start)) if led is not None else before
+            places, frames = _hastened(walk.way[start:], step), max(int((stretch[1] - start) / step), 1)
+            past = Frames(history.root_positions / scale, history.local_rotations)
+            rng = np.random.default_rng([walk.state.seed, walk.state.index, len(history), start])
+            ahead = windows(self.generator.begin(past, rng), past, Way(places[: frames + LATER] / scale))
+            found.append(_SetOut(start, frames, history, past, places, next(ahead), ahead))
+            if found[-1].flung < GENTLE:
+                break
+        return min(found, key=lambda one: one.flung)
+
+
+@dataclass(frozen=True)
+class _SetOut:
+    """A generator that has taken over a body."""
+
+    start: int
+    """The frame of the walk in which it does."""
+    frames: int
+    """For which it is to walk."""
+    history: History
+    past: Frames
+    places: Array
+    """Its way, one place a frame. (N, 2)."""
+    first: Frames
+    """Its first window."""
+    windows: Iterator[Frames]
+    """Those after that."""
+
+    @cached_property
+    def flung(self) -> float:
+        """By how many metres a second the fastest joint changes its speed from frame to frame as it takes over."""
+        over = self.past[-2:].then(self.first[:ONSET])
+        places = build_skeleton().forward_kinematics(over.root, over.local)[0].astype(np.float64)
+        return float(np.linalg.norm(np.diff(places, 2, axis=0), axis=-1).max(initial=0.0)) * FPS
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """Frames of a generator, and how the walk goes on after them."""
+
+    start: int
+    """The frame of the walk in which they begin."""
+    motion: Motion
+    state: BodyState
+    onward: _Walk | None
+    """As the procedural body does what is left of it; None where it is over."""
+
+    @property
+    def deep(self) -> float:
+        """How deep the procedural body is in furniture then (metres)."""
+        return 0.0 if self.onward is None else self.onward.deep
 
 
 @dataclass(frozen=True)
@@ -202,6 +264,11 @@ class _Walk:
     ruled: Motion
     after: BodyState
     """What that left."""
+
+    @staticmethod
+    def of(home: Home, part: Part, upcoming: tuple[Part, ...], state: BodyState, style: Walk) -> _Walk:
+        """From a state."""
+        return _Walk(home, part, upcoming, state, style, *ruled(home, part, upcoming, state))
 
     @property
     def stride(self) -> Stride | None:
@@ -241,6 +308,19 @@ class _Walk:
         goal = np.asarray(self.part.goal, dtype=np.float64)
         return float(np.linalg.norm(motion.root_positions[:, [0, 2]] - goal, axis=1).min())
 
+    def after_stretch(self, set_out: _SetOut, motion: Motion, beyond: Array) -> _Stretch:
+        """How it goes on after a motion that ended as a heel came down, whose way is `beyond` (N, 2) then."""
+        state = replace(self.state, history=set_out.history.followed_by(motion))
+        if self.is_over(motion):
+            return _Stretch(set_out.start, motion, _in_stride(state, self, beyond), None)
+        state = _in_stride(state, self, self.to_goal(beyond))
+        return _Stretch(set_out.start, motion, state, _Walk.of(self.home, self.part, self.upcoming, state, self.style))
+
+    @cached_property
+    def deep(self) -> float:
+        """How deep the procedural body is in furniture (metres)."""
+        return float(penetration(Kinematics.of(self.ruled), scene_of(self.home).obstacles, None).max(initial=0.0))
+
     def hurry(self, stretch: tuple[int, int], pace: float | None) -> float:
         """How much faster somebody goes a stretch who usually walks at `pace`, in the mood that the walk is in."""
         if pace is None:
@@ -251,12 +331,11 @@ class _Walk:
         return float(np.clip(mood * pace / max(planned, SLOWEST), *HURRY))
 
     def free(self, body: Kinematics) -> int:
-        """How many of a body's frames come before it is deeper in furniture than it may be, or has lost its way."""
+        """How many of a body's frames come before it is clearly in furniture, or has lost its way."""
         obstacles = scene_of(self.home).obstacles
-        most = float(penetration(Kinematics.of(self.ruled), obstacles, None).max()) + DEEPER
         places = body.positions[:, 0][:, [0, 2]]
         off = np.sqrt(((places[:, None] - self.way[None]) ** 2).sum(axis=2)).min(axis=1)
-        lost = (penetration(body, obstacles, None) > most) | (off > OFF)
+        lost = (penetration(body, obstacles, None) > CLEARLY_IN) | (off > OFF)
         return int(np.argmax(lost)) if lost.any() else len(lost)
 
 
@@ -383,18 +462,22 @@ def in_mood(made: Frames, action: Action, fixed: int) -> Frames:
     return Frames(made.root, local)
 
 
-def _steps_end(positions: Array, end: Array) -> int:
-    """Of the frames (T, 22, 3) in which a heel comes down the one that is nearest to a place (2,)."""
+def _steps_end(positions: Array, end: Array) -> list[int]:
+    """Counts of frames (T, 22, 3) up to where heels come down: first the nearest to a place (2,), then earlier ones."""
     landing = strides_landing(positions)
     if not len(landing):
-        return len(positions) - 1
-    return int(landing[_nearest(positions[landing, 0][:, [0, 2]], end)])
+        return [len(positions)] if len(positions) else []
+    last = _nearest(positions[landing, 0][:, [0, 2]], end)
+    return [int(at) + 1 for at in landing[last::-1]]
 
 
 def _landing_by(positions: Array, goal: Array) -> int | None:
     """The last frame of (T, 22, 3) in which a heel comes down as the body has just come by a place (2,)."""
     near = np.linalg.norm(positions[:, 0][:, [0, 2]] - goal, axis=1) < PASSES
-    landing = [int(at) for at in strides_landing(positions) if near[max(at - BY, 0) : at + 1].any()]
+    begun = max(int(np.argmax(near)) - BEYOND, 0)
+    # Of strides about there alone: before a bend they are shorter.
+    landing = [begun + int(at) for at in strides_landing(positions[begun:])]
+    landing = [at for at in landing if near[max(at - BY, 0) : at + 1].any()]
     return landing[-1] if landing else None
 
 

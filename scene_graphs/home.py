@@ -13,6 +13,7 @@ from typing import Any, Final
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from scene_graphs.doorways import WALL_GAP, HomeError, Pose, arrangements, span_on
 from scene_graphs.errors import FieldPath
@@ -52,7 +53,12 @@ HANDLE_IN: Final = 0.135
 SILL: Final = 0.3
 """An opening that begins higher than this is a window, and no door (metres)."""
 THRESHOLD: Final = 0.5
-"""How far outside an outer door the floor is known (metres)."""
+"""How far outside an outer door there is floor at least (metres)."""
+HALLS: Final = ((1.5, 1.3), (1.5, 0.4), (1.0, 0.4), (THRESHOLD, 0.0))
+"""How far from an outer door the hall before it goes, and how far beyond the door to either side: the first that is in
+no room (metres)."""
+HALL_FROM: Final = 0.1
+"""How far from the line of its wall a hall begins (metres)."""
 _DRAWS: Final = 12
 """Of rooms for a random home, before it is told why they cannot be joined."""
 
@@ -132,11 +138,32 @@ class Home:
         ways = [shapely.LineString(doorway.segment).buffer(reach, cap_style="flat") for doorway in self.doorways]
         return shapely.union_all([*self._outlines, *ways])
 
+    def on_floor(self, points: Array) -> NDArray[np.bool_]:
+        """Which of points [x, z] (N, 2) are in a room or a doorway between two. (N,)."""
+        return np.asarray(shapely.intersects_xy(self.floor, points[:, 0], points[:, 1]))
+
     @cached_property
     def thresholds(self) -> shapely.Geometry:
         """Outside every outer door as much floor, in [x, z], as somebody needs who goes out of it."""
         doors = [one for wall in self.walls for one in wall.openings if one.bottom <= SILL and not self.leads_on(one)]
-        return shapely.union_all([shapely.LineString(one.segment).buffer(THRESHOLD, cap_style="flat") for one in doors])
+        steps = [shapely.LineString(one.segment).buffer(THRESHOLD, cap_style="flat") for one in doors]
+        return shapely.union_all([*steps, *(self.hall(one)[0] for one in doors)])
+
+    def hall(self, door: Opening) -> tuple[shapely.Polygon, float, float]:
+        """The floor outside an outer door, in [x, z], how far out it goes, and how far beyond the door aside."""
+        start, end = (np.asarray(point, dtype=float) for point in door.segment)
+        along = (end - start) / max(float(np.linalg.norm(end - start)), 1e-9)
+        out = np.array([along[1], -along[0]])
+        x, z = ((start + end) / 2 + 0.1 * out).tolist()
+        out = -out if self.room_at((x, z)) is not None else out
+        rooms = shapely.union_all(self._outlines)
+        for deep, aside in HALLS:
+            corners = [start - aside * along, end + aside * along]
+            found = shapely.Polygon([*corners, *(corner + deep * out for corner in corners[::-1])])
+            clear = shapely.Polygon([corner + HALL_FROM * out for corner in corners] + [*found.exterior.coords][2:4])
+            if not clear.intersects(rooms):
+                break
+        return found, deep, aside
 
     def leads_on(self, opening: Opening) -> bool:
         """Whether an opening of a wall is a side of a doorway to another room."""

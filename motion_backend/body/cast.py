@@ -6,14 +6,14 @@ A look changes the surface alone. The skeleton stays that of the height, so that
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from functools import cache
 from typing import Any, Final, Literal, get_args
 
 import numpy as np
 
 from motion_backend.body.mannequin_mesh import MAX_PROPORTION, MIN_PROPORTION, Proportions
-from motion_backend.motion import Action, Character, Does, Emotion, Skill
+from motion_backend.motion import Action, Character, Does, Emotion, Handle, Skill
 from scene_graphs.data_tables import read_table, require_known, table
 from scene_graphs.errors import FieldPath
 from scene_graphs.layout import Placed, placed_from_row, placed_to_row
@@ -240,6 +240,8 @@ class Worked:
     """The point of a surface that is reached for, in the world."""
     hand: Literal["left", "right"] = "right"
     """That reaches for it."""
+    handle: Handle | None = None
+    """What it takes along; None where it only lies there, or nothing opens."""
 
 
 @dataclass(frozen=True)
@@ -272,14 +274,15 @@ def thing_from_dict(row: Mapping[str, Any]) -> InHand:
 
 def worked_to_dict(worked: Worked) -> dict[str, Any]:
     """Plain values for JSON."""
-    row = {"does": worked.does, "hand": worked.hand, "at": list(worked.at)}
+    row: dict[str, Any] = {"does": worked.does, "hand": worked.hand, "at": list(worked.at)}
+    row |= {"handle": asdict(worked.handle)} if worked.handle is not None else {}
     return row | {"piece": placed_to_row(worked.piece)}
 
 
 def worked_from_dict(row: Mapping[str, Any]) -> Worked:
     """The inverse of `worked_to_dict`."""
     piece = placed_from_row(row["piece"], FieldPath(("worked",)))
-    return Worked(row["does"], piece, tuple(row["at"]), row["hand"])
+    return Worked(row["does"], piece, tuple(row["at"]), row["hand"], Handle.from_dict(row.get("handle")))
 
 
 def named_things(actions: Sequence[Action]) -> dict[int, InHand]:

@@ -8,13 +8,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cache
 from random import Random
+from typing import get_args
 
 import numpy as np
 
 from motion_backend import rotations
 from motion_backend.body.cast import Role
 from motion_backend.body.face import UNITS
-from motion_backend.motion import Emotion, Motion
+from motion_backend.motion import Emotion, Motion, Reacts
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX
 from scene_graphs.data_tables import read_table, require_known, table
@@ -43,14 +44,19 @@ class _Faces:
     up_rad: float
     least_share: float
     jump_s: float
+    startled_s: float
+    """Into what a face does at something that happens, and out of it."""
     blinks: _Blinks
     emotions: Mapping[str, Mapping[str, float]]
+    reactions: Mapping[str, Mapping[str, float]]
+    """What it does at once, whatever the emotion."""
 
     def __post_init__(self) -> None:
         require_known("emotions", self.emotions, set(Emotion))
         require_known("emotions: lacking", set(Emotion), self.emotions)
-        for emotion, row in self.emotions.items():
-            require_known(f"emotions.{emotion}", row, UNITS)
+        require_known("reactions", self.reactions, set(get_args(Reacts)))
+        for name, row in (*self.emotions.items(), *self.reactions.items()):
+            require_known(f"emotions or reactions.{name}", row, UNITS)
 
 
 @cache
@@ -61,13 +67,17 @@ def _faces() -> _Faces:
 
 def expression(emotion: Emotion) -> Array:
     """What a face does in an emotion. (K,) shares."""
-    row = _faces().emotions[emotion]
+    return _shares(_faces().emotions[emotion])
+
+
+def _shares(row: Mapping[str, float]) -> Array:
+    """What a face does by a row of the table. (K,)."""
     return np.array([row.get(unit, 0.0) for unit in UNITS])
 
 
 def face_track(motion: Motion, role: Role) -> Array:
     """Shares of every unit in every frame of a motion. (T, K)."""
-    track = _emotions(motion, role)
+    track = _startled(_emotions(motion, role), motion)
     shut = np.isin(motion.actions, sorted(role.asleep)).astype(np.float64)
     shut = _smoothed(shut[:, None], _faces().change_s * motion.fps)[:, 0]
     closed = np.maximum(_blinks(len(motion), motion.fps), shut)
@@ -82,6 +92,17 @@ def _emotions(motion: Motion, role: Role) -> Array:
     keyframes, where = np.unique(motion.actions, return_inverse=True)
     rows = np.stack([expression(role.emotions.get(int(k), Emotion.NEUTRAL)) for k in keyframes])
     return _smoothed(rows[where.reshape(-1)], _faces().change_s * motion.fps)
+
+
+def _startled(track: Array, motion: Motion) -> Array:
+    """The same with what a face does where something that happens is reacted to."""
+    for phase in motion.phases:
+        if phase.reacts:
+            row = _faces().reactions.get(phase.reacts, {})
+            there = np.zeros((len(track), 1))
+            there[phase.start : phase.stop] = 1.0
+            track = track + _smoothed(there, _faces().startled_s * motion.fps) * (_shares(row) - track)
+    return track
 
 
 def _smoothed(track: Array, frames: float) -> Array:

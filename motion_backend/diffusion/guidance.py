@@ -17,6 +17,7 @@ from motion_backend import rotations
 from motion_backend.diffusion.goal_cleanup import below
 from motion_backend.diffusion.motion_features import (
     JOINT_COUNT,
+    ROOT,
     TURNS,
     HeadingFrame,
     from_features,
@@ -77,12 +78,16 @@ def along(way: Tensor, pull: float = PULL, order: int = 2) -> Guide:
 
 
 def posed(turns: Tensor, shares: Tensor, pull: float = HOLD) -> Guide:
-    """Guidance to a pose that is to be held: its features (14, 202), by shares (14,)."""
+    """Guidance to a pose that is to be held, and to where it is: its features (14, 202), by shares (14,).
+
+    Legs that are bent as on the seat would float under a pelvis that has not come to it.
+    """
 
     def guide(guess: Tensor) -> Tensor:
         moved = guess.clone()
         share = pull * shares[None, :, None]
-        moved[..., TURNS] += share * (turns[None, :, TURNS] - guess[..., TURNS])
+        for part in (ROOT, TURNS):
+            moved[..., part] += share * (turns[None, :, part] - guess[..., part])
         return moved
 
     return guide

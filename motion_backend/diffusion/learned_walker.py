@@ -6,10 +6,12 @@ from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
+import torch
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import History
 from motion_backend.diffusion.conditions import MadeOf
+from motion_backend.diffusion.guidance import along
 from motion_backend.diffusion.motion_features import HISTORY, STRIDE, HeadingFrame, Poses, from_features, to_features
 from motion_backend.diffusion.rollout import PelvisGoal, Rollout, Wish
 from motion_backend.diffusion.sampler import Sampler
@@ -21,6 +23,8 @@ from motion_backend.walk_generator import Ahead, Frames, Walker
 
 CAPTION: Final = "a person walks"
 """What all plain walks are called among others in what was learned from; how fast says the goal."""
+KEYS: Final = slice(STRIDE - 1, None, STRIDE)
+"""The frames of a window at 30 a second that it has at 10."""
 SEEDS: Final = 2**31
 SETTLED: Final = 0.2
 """Seconds in which half of what a body is off the stride of its gait is gone: in less the swinging foot is flung."""
@@ -60,7 +64,9 @@ class LearnedWalker:
     """At the end of the last window, of the pelvis and of the rotations' components, a window frame."""
 
     def window(self, ahead: Ahead) -> Frames:
-        """The next 42 frames. Who has just begun goes on in the stride of his gait; what he is off it dies away.
+        """The next 42 frames, pulled to their way: rooms are narrow.
+
+        Who has just begun goes on in the stride of his gait; what he is off it dies away.
 
         A model that is shown another body's stride walks on in it, whosever walk it is told to have.
         """
@@ -72,7 +78,9 @@ class LearnedWalker:
         place = np.array([[ahead.places[-1, 0], 0.0, ahead.places[-1, 1]]])
         goal = PelvisGoal(place)
         wish = Wish(CAPTION, goal, made_of=MadeOf.RECORDED, gait=self.gait)
-        poses = body.go_on(wish, [self.seed, self.made]).poses
+        way = body.frame.inward(np.insert(ahead.places[KEYS], 1, 0.0, axis=1))[None, :, [0, 2]]
+        guide = along(torch.from_numpy(way.astype(np.float32)))
+        poses = body.go_on(wish, [self.seed, self.made], guide).poses
         keys = Frames(poses.roots[0, HISTORY - 1 :], poses.local[0, HISTORY - 1 :])
         assert self._velocity is not None
         found, self._velocity = spline(keys, self._velocity)

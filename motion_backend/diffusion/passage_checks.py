@@ -13,6 +13,7 @@ from motion_backend.metrics.foot_skate import support_slip
 from motion_backend.metrics.joint_trajectories import Kinematics
 from motion_backend.metrics.penetration import CLEARLY_IN, penetration
 from motion_backend.motion import FPS, Emotion, Motion, Skill
+from motion_backend.procedural.walk.walk_styles import style_of
 from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX
 from motion_backend.walk_driver import unlike_people
@@ -30,6 +31,8 @@ SLIDES: Final = 8.0
 """Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
 
 
+HOPS, TIPTOE = 0.045, 15.0
+"""Metres by which a body bounces that hops, and degrees from which on its heels are off the floor as it stands."""
 JOLT: Final = 1.6
 """Metres a second by which a joint above the legs may change its speed from frame to frame: more is a jump."""
 UPPER: Final = [index for name, index in INDEX.items() if not name.endswith(("hip", "knee", "ankle", "foot"))]
@@ -39,6 +42,19 @@ HELD: Final = {Skill.SITDOWN: PartKind.HOLD, Skill.LIEDOWN: PartKind.HOLD, Skill
 
 class RefusedError(Exception):
     """What was made cannot stand; says why."""
+
+
+def refuse_unseen(passage: PlannedPassage) -> None:
+    """RefusedError for walks of which ten frames a second keep nothing: hops, flights, and who goes on his toes."""
+    if not passage.is_periodic or passage.part.action.skill is not Skill.LOCO:
+        return
+    style = style_of(passage.part.action)
+    if style.double < 0:
+        raise RefusedError("who runs flies, between ten frames a second")
+    if style.skips or style.bounce > HOPS:
+        raise RefusedError("hops are lost between ten frames a second")
+    if style.tiptoe > TIPTOE:
+        raise RefusedError("nobody goes on his toes in what was learned")
 
 
 def refuse_beyond(metres: float, most: float, passage: PlannedPassage) -> None:

@@ -28,16 +28,18 @@ from motion_backend.diffusion.goal_cleanup import (
 )
 from motion_backend.diffusion.guidance import HOLD, Guide, along, both, posed, reaching, towards
 from motion_backend.diffusion.learned_walker import known_poses, spline
-from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, to_features
-from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond
+from motion_backend.diffusion.motion_features import HISTORY, STRIDE, WINDOW, HeadingFrame, to_features
+from motion_backend.diffusion.passage_checks import LOST, RefusedError, check, refuse_beyond, refuse_unseen
 from motion_backend.diffusion.planned_passages import PlannedPassage
 from motion_backend.diffusion.rollout import Rollout, conditions
 from motion_backend.diffusion.sampler import Sampler, Scale
 from motion_backend.diffusion.windows import THERE
+from motion_backend.furniture_clearance import arms_aside
 from motion_backend.metrics.contact_error import THRESHOLDS
 from motion_backend.mocap.foot_hold import held
 from motion_backend.motion import FPS, Motion, Note, Phase, Skill, join
 from motion_backend.rotations import Array
+from motion_backend.scene import scene_of
 from motion_backend.skeleton import INDEX, Skeleton
 from motion_backend.stride_takeover import ARMS_HALF_LIFE, HALF_LIFE, joined
 from motion_backend.walk_driver import by_rules
@@ -126,6 +128,7 @@ class PlanFollower:
 
         RefusedError where none can.
         """
+        refuse_unseen(passage)
         why, best = RefusedError(""), list[tuple[int, Motion, float]]()
         for number in range(TRIES):
             try:
@@ -133,6 +136,8 @@ class PlanFollower:
                 frames, laid = _laid(body.through(passage, [*seed, number]), passage, arms, number)
                 frames, away = body.brought(passage, frames)
                 motion = _settled(past, frames, passage, Phase(passage.phase, 0, len(frames), self.name, laid))
+                if passage.is_free:
+                    motion = arms_aside(motion, passage.part, scene_of(passage.home).obstacles)
                 deeper = check(motion, passage, past)
                 best = sorted([*best, (deeper, motion, away)], key=lambda one: one[0])
                 if not deeper:
@@ -207,7 +212,7 @@ class _Body:
         return found, bool(self.follower.scheduler.over(window, told.text, told.frame)[0])
 
     def _guide(self, passage: PlannedPassage, done: int, body: Rollout) -> Guide | None:
-        """Walks are pulled to their way, hands to their goal, and pelvises to their seat in the last windows."""
+        """Walks are pulled to their way, hands to their goal, and bodies to how they sit, at last to their seat."""
         frame = body.frame
         if passage.is_periodic:
             way = frame.inward(passage.way(done))[None, :, [0, 2]]
@@ -215,18 +220,25 @@ class _Body:
         if passage.hand is not None:
             goal, left = passage.hand
             return reaching(frame.inward(goal[None])[0], left, passage.held(done))
-        if not passage.is_seat or passage.due > done + LOOK:
+        if not passage.is_seat:
             return None
+        held = self._held(passage, done, frame)
+        if passage.due > done + LOOK:
+            return held
         # A body that is pulled up faster than its legs stretch leaves the floor: then it rises by itself.
         by_itself = passage.kind is PartKind.RISE and self.number % 2
         axes = (0, 2) if by_itself else (0, 1, 2)
         place = frame.inward(passage.plan.root_positions[-1].astype(np.float64)[None])[:, axes]
         seated = towards(torch.from_numpy(place.astype(np.float32)), axes)
-        if passage.kind is PartKind.RISE:
-            return seated
-        wanted = (passage.pose(done, frame), passage.settled(done))
-        pose, shares = (torch.from_numpy(one.astype(np.float32)) for one in wanted)
-        return both(seated, posed(pose, shares))
+        return seated if held is None else both(seated, held)
+
+    def _held(self, passage: PlannedPassage, done: int, frame: HeadingFrame) -> Guide | None:
+        """The pose that a body comes to on its seat, as far as it has come to it; None where it has not begun to."""
+        shares = passage.settled(done)
+        if passage.kind is PartKind.RISE or not shares.any():
+            return None
+        pose, held = (torch.from_numpy(one.astype(np.float32)) for one in (passage.pose(done, frame), shares))
+        return posed(pose, held)
 
     def brought(self, passage: PlannedPassage, made: Frames) -> tuple[Frames, float]:
         """Frames with pelvis or hand at the goal at last, and how far it was. RefusedError where it was too far."""

@@ -66,6 +66,11 @@ class PlannedPassage:
         return self.kind in SEATS
 
     @property
+    def is_free(self) -> bool:
+        """Whether arms are in nothing on purpose: in locomotion, standing and sitting down."""
+        return self.is_periodic or (self.part.kind is PartKind.SIT and not self.since)
+
+    @property
     def caption(self) -> str:
         """What it is called."""
         action = self.part.action

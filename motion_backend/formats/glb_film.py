@@ -16,7 +16,7 @@ from motion_backend.body.skinning import Morphs, SkinnedMesh
 from motion_backend.formats.glb_props import add_props, bends
 from motion_backend.formats.gltf_document import ARRAY_BUFFER, Animation, Document
 from motion_backend.motion import Emotion, Motion
-from motion_backend.props import prop_tracks
+from motion_backend.props import prop_tracks, replaced
 from scene_graphs.json_fields import Json
 
 if TYPE_CHECKING:
@@ -65,15 +65,15 @@ def props_glb(motion: Motion, role: Role) -> bytes:
     return _finished(document, animation, motion, roots) if roots else b""
 
 
-def scene_glb(home: Home) -> bytes:
-    """The home alone, standing still."""
-    return meshes_to_glb(home_meshes_of(home))
+def scene_glb(home: Home, role: Role = PLAIN) -> bytes:
+    """The home alone, standing still; what moves of it in a role is left out."""
+    return meshes_to_glb(home_meshes_of(home, role))
 
 
 def film_glb(home: Home, motion: Motion, role: Role = PLAIN) -> bytes:
     """The home and the character acting in it, with what is in the hands, in one file."""
     document, animation = Document(), Animation()
-    still = _add_meshes(document, home_meshes_of(home))
+    still = _add_meshes(document, home_meshes_of(home, role))
     body = _add_body(document, animation, motion, role)
     props = add_props(document, animation, prop_tracks(motion, role), motion)
     return _finished(document, animation, motion, [*still, *body, *props])
@@ -91,11 +91,12 @@ def meshes_to_glb(meshes: Iterable[StaticMesh]) -> bytes:
     return document.to_glb(_add_meshes(document, meshes))
 
 
-def home_meshes_of(home: Home) -> Sequence[StaticMesh]:
-    """All that stands still in a film."""
+def home_meshes_of(home: Home, role: Role = PLAIN) -> Sequence[StaticMesh]:
+    """All that stands still in a film with that role."""
     from scene_graphs.meshes.furniture_mesh import home_meshes
 
-    return home_meshes(home)
+    gone = replaced(role)
+    return [mesh for mesh in home_meshes(home) if mesh.name not in gone]
 
 
 def _add_meshes(document: Document, meshes: Iterable[StaticMesh]) -> list[int]:

@@ -65,12 +65,13 @@ def dict_to_motion(data: dict[str, Any]) -> Motion:
 def phase_to_dict(phase: Phase) -> dict[str, Any]:
     """What a body did in some frames, who made them, and why another backend than the one asked for."""
     row = {"part": phase.kind.value, "start": phase.start, "stop": phase.stop}
-    return row | {"backend": phase.backend, "fallback": phase.fallback or None}
+    who = {"backend": phase.backend, "fallback": phase.fallback or None}
+    return row | who | ({"reacts": phase.reacts} if phase.reacts else {})
 
 
 def _dict_to_phase(row: dict[str, Any]) -> Phase:
     kind, start, stop = PhaseKind(row["part"]), int(row["start"]), int(row["stop"])
-    return Phase(kind, start, stop, str(row.get("backend", "")), str(row.get("fallback") or ""))
+    return Phase(kind, start, stop, str(row.get("backend", "")), str(row.get("fallback") or ""), row.get("reacts", ""))
 
 
 def dict_to_simulated(row: dict[str, Any]) -> Simulated:

@@ -62,6 +62,8 @@ def npz_bytes(motion: Motion) -> bytes:
         "note_words": np.array([note.words for note in motion.notes], dtype=np.str_),
         "simulated": np.array([json.dumps(asdict(one)) for one in motion.simulated], dtype=np.str_),
     }
+    if any(phase.reacts for phase in motion.phases):
+        arrays["phase_reacts"] = np.array([phase.reacts for phase in motion.phases], dtype=np.str_)
     return archive(arrays)
 
 
@@ -119,8 +121,11 @@ def _phases(data: Mapping[str, NDArray[Any]]) -> tuple[Phase, ...]:
     kinds, nobody = data["phase_parts"].tolist(), [""] * len(data["phase_parts"])
     backends = data["phase_backends"].tolist() if "phase_backends" in data else nobody
     fallbacks = data["phase_fallbacks"].tolist() if "phase_fallbacks" in data else nobody
-    rows = zip(kinds, data["phase_frames"].tolist(), backends, fallbacks, strict=True)
-    return tuple(Phase(PhaseKind(kind), start, stop, backend, why) for kind, (start, stop), backend, why in rows)
+    reacts = data["phase_reacts"].tolist() if "phase_reacts" in data else nobody
+    rows = zip(kinds, data["phase_frames"].tolist(), backends, fallbacks, reacts, strict=True)
+    return tuple(
+        Phase(PhaseKind(kind), start, stop, backend, why, how) for kind, (start, stop), backend, why, how in rows
+    )
 
 
 _STAND_UP = rotations.rotvec_to_quat(np.array([np.pi / 2, 0.0, 0.0]))

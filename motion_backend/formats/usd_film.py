@@ -67,7 +67,7 @@ def film_usd(home: Home | None, motion: Motion, role: Role = PLAIN) -> bytes:
         stage.SetDefaultPrim(film.GetPrim())
         if home is not None:
             UsdGeom.Xform.Define(stage, f"{ROOT}/Home")
-            _add_home(stage, home_meshes_of(home))
+            _add_home(stage, home_meshes_of(home, role))
         _add_body(stage, motion, role)
         _add_props(stage, motion, role)
         stage.GetRootLayer().Save()

@@ -1,7 +1,8 @@
 """How far the zero-moment point of a body lies outside its planted soles, while it stands or walks and while it rises.
 
-Judged are frames in which soles alone carry: not before a seat is left, not while sitting, lying or kneeling, and not
-in the air. Recorded people are not at 0 either: the body counts as one mass, and soles are judged by their labels.
+Judged are frames in which soles alone carry: not before a seat is left, not while sitting, lying, kneeling or bearing
+on both hands, and not in the air. Recorded people are not at 0 either: the body counts as one mass, and soles are
+judged by their labels.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ RISEN = 0.85
 """A body has risen when its pelvis is at this share of its standing height."""
 KNEELS = 0.12
 """A knee lower than this is knelt on (metres at 1.70 m)."""
+ON_HANDS = 0.1
+"""Wrists both lower than this are of hands that carry (metres at 1.70 m)."""
 
 
 def outside_soles(body: Kinematics) -> Array:
@@ -68,6 +71,9 @@ def rising_frames(body: Kinematics) -> NDArray[np.bool_]:
 
 
 def kneeling(body: Kinematics) -> NDArray[np.bool_]:
-    """Frames in which a knee carries. (T,)."""
-    knees = body.positions[:, [INDEX["left_knee"], INDEX["right_knee"]], 1]
-    return np.asarray(knees.min(axis=1) < KNEELS * body.motion.skeleton.scale)
+    """Frames in which a knee carries, or both hands. (T,)."""
+    knees, wrists = (
+        body.positions[:, [INDEX[f"left_{joint}"], INDEX[f"right_{joint}"]], 1] for joint in ("knee", "wrist")
+    )
+    scale = body.motion.skeleton.scale
+    return np.asarray((knees.min(axis=1) < KNEELS * scale) | (wrists.max(axis=1) < ON_HANDS * scale))

@@ -103,8 +103,9 @@ SWINGING: Final[dict[Doing, tuple[Array, ...]]] = {
     Doing.STANDS_UP: _by_leg(PRICES_PELVIS, 5.0),
 }
 """And so do the joints of the leg that swings, left or right, while the other stands; on one's knees half as much."""
-CALMED: Final = 10.0
-"""So much more do joint speeds count where the body rolls: limbs in the air shook as what carries it changed."""
+CALMED: Final = 40.0
+"""So much more do joint speeds count where the body rolls: limbs in the air swing at 2 to 6 Hz as what carries it
+changes."""
 PRICES_LYING: Final[Array] = _legs_first(PRICES_PELVIS, 4.0, "left", "right") * np.repeat([1.0, CALMED], [NV + 6, NU])
 """Where it lies down, or gets up from the floor, legs count more too: feet that the plan lifts were drawn over the
 floor."""

@@ -75,7 +75,7 @@ def policy_of(part: Part) -> PolicyName | None:
         return PolicyName.WALK
     if part.kind is PartKind.RISE:
         return PolicyName.GETUP
-    if part.kind is PartKind.HOLD and skill not in (Skill.SITDOWN, Skill.LIEDOWN):
+    if part.reaction is not None or (part.kind is PartKind.HOLD and skill not in (Skill.SITDOWN, Skill.LIEDOWN)):
         return None
     return POLICY_OF[skill]
 

@@ -13,6 +13,7 @@ from motion_backend import rotations
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.inverse_kinematics import arm_rotations, leg_rotations, two_bone
 from motion_backend.motion import FPS
+from motion_backend.physics.feet_over_edges import lift_over_edges
 from motion_backend.physics.generalized_coordinates import controls, fold, speeds
 from motion_backend.physics.hands_round_things import bones, eased, hands_round_things
 from motion_backend.physics.mjcf_character import SIDES
@@ -48,13 +49,17 @@ class Doing(IntEnum):
     REACHES = 2
     """For something, with its hands."""
     LIES = 3
-    """Lies down, or lies."""
+    """Lies down, lies, or gets up from a bed."""
     RISES = 4
     """Gets up from the floor, on hands and knees."""
     STANDS_UP = 5
     """From its knees."""
     GOES_DOWN = 6
     """To lie: onto its knees, or to the edge of a bed."""
+
+
+ROLLS: Final = (Doing.LIES, Doing.GOES_DOWN)
+"""Where feet go over the edge of a bed or a seat."""
 
 
 @dataclass(frozen=True)
@@ -129,8 +134,9 @@ class Reference:
 
     @staticmethod
     def of(plan: Plan, skeleton: Skeleton, things: Obstacles | None = None) -> Reference:
-        """With feet that swing a little higher, and arms that reach as far without their collars and round things."""
-        local = _without_collars(plan.roots, _feet_lifted(plan, skeleton), skeleton)
+        """With feet that swing a little higher and over edges, and arms that reach as far without their collars and
+        round things."""
+        local = _without_collars(plan.roots, _feet_lifted(plan, skeleton, things), skeleton)
         local = _arms_over_floor(plan.roots, local, skeleton)
         if things is not None:
             local = hands_round_things(plan.roots, local, plan.reaching, skeleton, things)
@@ -140,12 +146,16 @@ class Reference:
         return Reference(qpos, qvel, controls(qpos, qvel), plan.contacts > 0.5, wrists, plan.doing)
 
 
-def _feet_lifted(plan: Plan, skeleton: Skeleton) -> Array:
+def _feet_lifted(plan: Plan, skeleton: Skeleton, things: Obstacles | None) -> Array:
     """Local rotations (T, 22, 4) of a plan whose feet swing a little higher, as they are turned."""
     positions, world = skeleton.forward_kinematics(plan.roots, plan.local)
+    over = np.zeros((len(plan), len(SIDES)))
+    if things is not None and (rolls := np.isin(plan.doing, ROLLS)).any():
+        over = lift_over_edges(positions, world, skeleton, things) * rolls[:, None]
     local = np.array(plan.local, dtype=np.float64)
     for index, (side, _) in enumerate(SIDES):
         lift = _lift(plan.contacts[:, 2 * index : 2 * index + 2].max(axis=1) > 0.5) * skeleton.scale
+        lift = np.maximum(lift, over[:, index])
         frames = np.flatnonzero(lift)
         if not len(frames):
             continue

@@ -19,7 +19,7 @@ from motion_backend.physics.mjcf_scene import Models, models_of, near_way
 from motion_backend.physics.mpc import Moment, stacked
 from motion_backend.physics.physics_options import Mode
 from motion_backend.physics.physics_record import forces_of, weight_error
-from motion_backend.physics.reference import Doing, Plan, Reference
+from motion_backend.physics.reference import ROLLS, Doing, Plan, Reference
 from motion_backend.physics.tracker import Tracked
 from motion_backend.rotations import Array
 from motion_backend.scene import scene_of
@@ -36,7 +36,9 @@ DOING: Final = {
     PhaseKind.WALK: Doing.WALKS, PhaseKind.TOUCH: Doing.REACHES, PhaseKind.EDGE: Doing.GOES_DOWN,
     PhaseKind.LIEDOWN: Doing.LIES, PhaseKind.GETUP: Doing.RISES, PhaseKind.STANDUP: Doing.STANDS_UP,
 }  # fmt: skip
-"""What is followed otherwise; getting up from a bed and from a seat are not."""
+"""What is followed otherwise."""
+HIGH: Final = {Doing.RISES: Doing.LIES, Doing.STANDS_UP: Doing.OTHER}
+"""What getting up from a bed, and standing up from it or from a seat, are instead."""
 KNEELS_IN: Final = (PhaseKind.STAND, PhaseKind.TOUCH)
 """Where who kneels is followed as who goes down to lie is: on one's knees, for something or to pray."""
 GOES_DOWN_IN: Final = 1.3
@@ -59,7 +61,8 @@ class Task:
         before = np.zeros(len(self.past), dtype=np.int8)
         past = Plan(self.past.root_positions, self.past.local_rotations, np.array(self.past.contacts), before)
         boxes = scene_of(self.home).obstacles
-        things = near_way(self._joints[self.plan.reaching], boxes) if self.plan.reaching.any() else None
+        near = self.plan.reaching | np.isin(self.plan.doing, ROLLS)
+        things = near_way(self._joints[near], boxes) if near.any() else None
         return Reference.of(past.followed_by(self.plan), self.skeleton, things).part(slice(len(past) - 1, None))
 
     @cached_property
@@ -115,8 +118,8 @@ def doing(motion: Motion) -> NDArray[np.int8]:
     found = np.full(len(motion), Doing.OTHER, dtype=np.int8)
     for phase in motion.phases:
         does = DOING.get(phase.kind, Doing.OTHER)
-        if does in (Doing.RISES, Doing.STANDS_UP) and not _low(motion.part(phase.start, phase.start + 1), does):
-            does = Doing.OTHER
+        if does in HIGH and not _low(motion.part(phase.start, phase.start + 1), does):
+            does = HIGH[does]
         found[phase.start : phase.stop] = does
         if phase.kind in KNEELS_IN:
             found[phase.start : phase.stop][_kneels(motion.part(phase.start, phase.stop))] = Doing.GOES_DOWN

@@ -101,7 +101,7 @@ class Around(NamedTuple):
 
 def arms_clear(pose: Pose, start: Pose, around: Around, skeleton: Skeleton) -> Pose:
     """A segment of T frames, begun in the single pose `start`, with its arms out of what is solid and none too fast."""
-    return _slowed(_out(pose, around, skeleton), start, skeleton)
+    return _slowed(arms_out(pose, around, skeleton), start, skeleton)
 
 
 class _Arms(NamedTuple):
@@ -180,14 +180,17 @@ class _Arms(NamedTuple):
         return Contacts(frames, of, out)
 
 
-def _out(pose: Pose, around: Around, skeleton: Skeleton) -> Pose:
-    """A segment of T frames with both arms out of what they are in."""
+def arms_out(pose: Pose, around: Around, skeleton: Skeleton, where: NDArray[np.bool_] | None = None) -> Pose:
+    """A segment of T frames with both arms out of what they are in, or out of what they are in about the frames `where`
+    (T,) alone."""
     from scipy.ndimage import uniform_filter1d
 
     whole = _Arms.of(pose, around, skeleton)
     wanting, seen = whole.on(np.zeros((2, len(pose), 4))), np.zeros(len(pose), dtype=bool)
     for rows in wanting.rows:
         seen[rows.frames[rows.wanted > SEEN]] = True
+    if where is not None:
+        seen &= where
     if not seen.any():
         return pose
     at, near = whole.about(seen)

@@ -22,6 +22,7 @@ from motion_backend.procedural.gaze import gazing
 from motion_backend.procedural.held_poses import idle, standing
 from motion_backend.procedural.pose import Pose, concatenate
 from motion_backend.procedural.pose_solver import all_released, head_clear, hips_within, released, solve
+from motion_backend.procedural.reaction import looking
 from motion_backend.procedural.skill_controller import perform
 from motion_backend.procedural.tail import carried_on, frames_kept_back
 from motion_backend.procedural.takeover import eased_from, pose_of
@@ -121,7 +122,7 @@ def _to_motion(body: Body, part: Part) -> Motion:
     pose, start = concatenate(body.frames), body.begun
     if body.tail is not None:
         pose, start = carried_on(body.tail, pose), body.tail.at(0)
-    pose = gazing(pose, body, part)
+    pose = gazing(pose, body, part) if part.reaction is None else looking(pose, body, part)
     if posture is not Posture.LYING:
         pose = head_clear(pose, around.solid, body.skeleton)
     upright, pose = pose, balanced(pose, body.phases, body.skeleton, body.before, body.beyond)

@@ -44,6 +44,8 @@ LEFT: Final = 0.01
 """Thighs are off a seat when the pelvis is so much higher than at rest (metres)."""
 SEATS: Final = 0.35
 """Who rests lower than so much of the standing height is on the floor, and has hands and knees on it in getting up."""
+ON_FLOOR: Final = 0.1
+"""A wrist lower than this (metres) is of a hand that bears."""
 KNEELS: Final = 0.15
 """A knee lower than this may be knelt on (metres at 1.70 m)."""
 BENT: Final = 0.985
@@ -111,8 +113,8 @@ def balanced(
 
 
 def on_its_feet(pose: Pose, phases: Sequence[Phase], skeleton: Skeleton) -> NDArray[np.bool_]:
-    """Frames in which the pelvis rests on nothing, as far as phases and its height say. (T,)."""
-    free = np.ones(len(pose), dtype=bool)
+    """Frames in which the pelvis rests on nothing, as far as phases, height and palms say. (T,)."""
+    free = ~((pose.pressing > 0) & (pose.reaching > 0) & (pose.reach[..., 1] < ON_FLOOR)).any(axis=1)
     height = pose.pelvis[:, 1]
     for phase in phases:
         frames = slice(phase.start, len(pose) if phase is phases[-1] else phase.stop)

@@ -15,7 +15,7 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.backend_protocol import Part, PartKind
-from motion_backend.motion import FPS, Posture, Skill
+from motion_backend.motion import FPS, Emotion, Posture, Skill
 from motion_backend.procedural.body_state import Body, Point
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.pose import Pose, smooth
@@ -28,6 +28,8 @@ CONTACTS: Final = (PartKind.REACH, PartKind.SIT, PartKind.LIE)
 WALKS: Final = (PartKind.WALK, PartKind.TURN)
 WAITS: Final = re.compile(r"\bwaiting\b", re.IGNORECASE)
 """Captions of who waits for somebody."""
+ON_A_SIDE: Final = 0.5
+"""Who lies has one hip higher than the other by more than this share of the way between them."""
 PRESSED: Final = 0.9
 """A hand that presses more than this is at its thing."""
 
@@ -134,10 +136,21 @@ def gazing(pose: Pose, body: Body, part: Part) -> Pose:
     # Who walks to a seat is not yet in the pose that its caption names.
     named = part.kind not in WALKS or part.action.skill is Skill.LOCO
     told = named and re.search(row.told, part.action.caption.lower())
-    if held or (told and (part.kind is not PartKind.HOLD or re.search(row.kept, part.action.caption.lower()))):
+    if (
+        held
+        or _sleeps(pose, body, part)
+        or (told and (part.kind is not PartKind.HOLD or re.search(row.kept, part.action.caption.lower())))
+    ):
         return pose
     looks = _beside_what_is_told(pose, body, part, row) if told else _looks(pose, body, part, row)
     return turned_to(pose, list(looks), body.posture, body.skeleton, row)
+
+
+def _sleeps(pose: Pose, body: Body, part: Part) -> bool:
+    """Whether the head stays on its pillow: of who lies tired, or on a side, where to turn it would be to lift it."""
+    across = abs(float(rotations.rotate(pose.hips[-1], np.array([1.0, 0.0, 0.0]))[1]))
+    lies = part.kind in (PartKind.LIE, PartKind.HOLD) and body.posture is Posture.LYING
+    return lies and (part.action.emotion is Emotion.TIRED or across > ON_A_SIDE)
 
 
 def _beside_what_is_told(pose: Pose, body: Body, part: Part, row: Gaze) -> Iterator[Look]:

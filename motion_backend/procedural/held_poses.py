@@ -226,10 +226,9 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     ease = (1 - np.exp(-time / (row.ease_s * fps)))[:, None]
     slow = [_wander(frames, row, rng, fps) for _ in range(4)]
     breath = np.sin(2 * np.pi * (row.breath_hz * time / fps + rng.uniform() + row.breath_uneven_share * slow[3]))
-    lies = abs(float(rotations.rotate(pose.hips, UP)[1])) < LIES
     moved = (
         (row.least_share + (1 - row.least_share) * size)
-        * (row.lying_share if lies else 1.0)
+        * _bends_lying(pose.hips, row)
         * _bends(slow, _shifts(frames, rng, fps), row)
     )
     moved[:, 0] += row.breath_rad * breath
@@ -242,6 +241,14 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     arms = held.arms.copy()
     arms[:, :, 2] += (row.breath_arms * ease[:, 0] * breath)[:, None] * (1 - held.reaching)
     return replace(held, spine=spine, head=head, pelvis=held.pelvis + sway, arms=arms)
+
+
+def _bends_lying(hips: Array, row: Idle) -> Array:
+    """What is left of bends forwards, turns and bends aside: of who lies what lifts no head off its pillow. (3,)."""
+    if abs(float(rotations.rotate(hips, UP)[1])) >= LIES:
+        return np.ones(3)
+    upright_axes = np.abs(rotations.rotate(hips, np.eye(3))[:, 1])
+    return np.asarray(row.lying_share * np.maximum(upright_axes, [0.0, 1.0, 0.0]))
 
 
 def alive(motion: Pose, size: float, rng: np.random.Generator, fps: int) -> Pose:

@@ -10,6 +10,7 @@ from motion_backend.procedural.body_state import Body, Point, spot_of, spot_unde
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import Seat
 from motion_backend.procedural.lie.lie_skill import before_bed, get_up, leave_bed, lie, sit_up, stay_lying
+from motion_backend.procedural.reaction import react
 from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.sit.sit_skill import before_seat, leave_seat, sit, stay_seated
 from motion_backend.procedural.tail import only_stands
@@ -76,8 +77,11 @@ def _rise(body: Body, part: Part) -> None:
 
 
 def _hold(body: Body, part: Part) -> None:
-    """Stay in the pose that the body has come to."""
-    if body.posture is Posture.SEATED:
+    """Stay in the pose that the body has come to, or take what happens in it."""
+    if part.reaction is not None:
+        body.enter(RESTS_IN[body.posture])
+        react(body, part)
+    elif body.posture is Posture.SEATED:
         body.enter(PhaseKind.SITDOWN)
         stay_seated(body, part)
     elif body.posture is Posture.LYING:
@@ -89,6 +93,12 @@ def _hold(body: Body, part: Part) -> None:
             stay(body, part)
 
 
+RESTS_IN = {
+    Posture.STANDING: PhaseKind.STAND,
+    Posture.SEATED: PhaseKind.SITDOWN,
+    Posture.LYING: PhaseKind.LIEDOWN,
+}
+"""The phase of who stays in a posture."""
 PLACES: dict[PartKind, Callable[[Body, Action], tuple[Point, float]]] = {
     PartKind.SIT: before_seat,
     PartKind.LIE: before_bed,

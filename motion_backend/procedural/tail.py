@@ -86,7 +86,7 @@ def _leads_nowhere(later: Part, part: Part) -> bool:
 
 def only_stands(part: Part) -> bool:
     """Whether a part is nothing but staying on the feet one has come to: who has something to do next does that."""
-    return part.kind is PartKind.HOLD and part.action.skill in RISINGS
+    return part.kind is PartKind.HOLD and part.reaction is None and part.action.skill in RISINGS
 
 
 def carried_on(tail: Pose, pose: Pose) -> Pose:

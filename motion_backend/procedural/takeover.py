@@ -23,60 +23,67 @@ STRAIGHT = 1e-3
 
 def pose_of(history: History, skeleton: Skeleton) -> Pose:
     """The handles of a body in its last frame; a single pose."""
-    root, local = history.root_positions[-1:], history.local_rotations[-1:]
-    positions, world = skeleton.forward_kinematics(root, local)
-    places, turns = positions[0].astype(np.float64), world[0]
+    contacts = np.array(history.contacts[-1:], dtype=np.float64)
+    return poses_of(history.root_positions[-1:], history.local_rotations[-1:], contacts, skeleton).at(0)
+
+
+def poses_of(root: Array, local: Array, contacts: Array, skeleton: Skeleton) -> Pose:
+    """The handles of a body in T frames: pelvis (T, 3), local rotations (T, 22, 4), contacts (T, 4)."""
+    positions, turns = skeleton.forward_kinematics(root, local)
+    places = positions.astype(np.float64)
+    pairs = {part: [INDEX[f"{side}_{part}"] for side, _ in SIDES] for part in ("ankle", "foot", "wrist")}
     pose = Pose(
-        pelvis=root[0],
-        hips=turns[INDEX["pelvis"]],
-        spine=_bend(local[0], SPINE),
-        head=_bend(local[0], ("neck", "head")),
-        ankles=np.stack([places[INDEX[f"{side}_ankle"]] for side, _ in SIDES]),
-        feet=np.stack([turns[INDEX[f"{side}_ankle"]] for side, _ in SIDES]),
-        toes=-rotations.quat_to_rotvec(np.stack([local[0, INDEX[f"{side}_foot"]] for side, _ in SIDES]))[:, 0],
-        knees=np.stack([_pole(places, f"{side}_hip", f"{side}_knee", f"{side}_ankle") for side, _ in SIDES]),
-        arms=np.zeros((2, 3)),
-        elbows=np.zeros((2, 3)),
-        reach=np.stack([places[INDEX[f"{side}_wrist"]] for side, _ in SIDES]),
-        reaching=np.zeros(2),
-        palms=np.stack([turns[INDEX[f"{side}_wrist"]] for side, _ in SIDES]),
-        pressing=np.zeros(2),
-        planted=np.array(history.contacts[-1]).reshape(2, 2).max(axis=1),
+        pelvis=np.asarray(root, dtype=np.float64),
+        hips=turns[:, INDEX["pelvis"]],
+        spine=_bend(local, SPINE),
+        head=_bend(local, ("neck", "head")),
+        ankles=places[:, pairs["ankle"]],
+        feet=turns[:, pairs["ankle"]],
+        toes=-rotations.quat_to_rotvec(local[:, pairs["foot"]])[..., 0],
+        knees=_poles(places, "hip", "knee", "ankle"),
+        arms=np.zeros((len(root), 2, 3)),
+        elbows=np.zeros((len(root), 2, 3)),
+        reach=places[:, pairs["wrist"]],
+        reaching=np.zeros((len(root), 2)),
+        palms=turns[:, pairs["wrist"]],
+        pressing=np.zeros((len(root), 2)),
+        planted=np.asarray(contacts).reshape(-1, 2, 2).max(axis=2),
     )
     return replace(pose, **_arms(pose, places, skeleton))
 
 
 def _arms(pose: Pose, places: Array, skeleton: Skeleton) -> dict[str, Array]:
-    """Wrists from the shoulders, in arm lengths, and where elbows point, both in the chest's frame."""
-    chest, at = (frames[0] for frames in chest_frame(pose.repeat(1), skeleton))
-    arms, elbows = [], []
-    for side, _ in SIDES:
-        rest = skeleton.offsets[INDEX[f"{side}_collar"]] + skeleton.offsets[INDEX[f"{side}_shoulder"]]
-        span = sum(abs(float(skeleton.offsets[INDEX[f"{side}_{joint}"], 0])) for joint in ("elbow", "wrist"))
-        wrist = rotations.rotate(rotations.inverse(chest), places[INDEX[f"{side}_wrist"]] - at) - rest
-        arms.append(wrist / span)
-        pole = _pole(places, f"{side}_shoulder", f"{side}_elbow", f"{side}_wrist")
-        elbows.append(rotations.rotate(rotations.inverse(chest), pole))
-    return {"arms": np.stack(arms), "elbows": np.stack(elbows)}
+    """Wrists from the shoulders, in arm lengths, and where elbows point, both in the chest's frame. (T, 2, 3) each."""
+    chest, at = chest_frame(pose, skeleton)
+    back = rotations.inverse(chest)[:, None]
+    rest, span = (
+        np.array([of(side) for side, _ in SIDES])
+        for of in (
+            lambda side: skeleton.offsets[INDEX[f"{side}_collar"]] + skeleton.offsets[INDEX[f"{side}_shoulder"]],
+            lambda side: sum(abs(float(skeleton.offsets[INDEX[f"{side}_{joint}"], 0])) for joint in ("elbow", "wrist")),
+        )
+    )
+    wrists = rotations.rotate(back, pose.reach - at[:, None]) - rest
+    poles = rotations.rotate(back, _poles(places, "shoulder", "elbow", "wrist"))
+    return {"arms": wrists / span[:, None], "elbows": poles}
 
 
 def _bend(local: Array, joints: tuple[str, ...]) -> Array:
-    """What some joints turn together, as a rotation vector. (3,)."""
-    turn = rotations.IDENTITY
+    """What some joints turn together, as rotation vectors. (T, 3)."""
+    turn = np.broadcast_to(rotations.IDENTITY, local[:, 0].shape)
     for joint in joints:
-        turn = rotations.compose(turn, local[INDEX[joint]])
+        turn = rotations.compose(turn, local[:, INDEX[joint]])
     return rotations.quat_to_rotvec(turn)
 
 
-def _pole(places: Array, start: str, middle: str, end: str) -> Array:
-    """The unit direction in which a limb is bent; ahead and down where it is straight. (3,)."""
-    first, joint, last = places[INDEX[start]], places[INDEX[middle]], places[INDEX[end]]
+def _poles(places: Array, start: str, middle: str, end: str) -> Array:
+    """The unit directions in which both limbs are bent; ahead and down where one is straight. (T, 2, 3)."""
+    first, joint, last = (places[:, [INDEX[f"{side}_{part}"] for side, _ in SIDES]] for part in (start, middle, end))
     along = rotations.normalize(last - first)
-    out = joint - first - ((joint - first) @ along) * along
-    if float(np.linalg.norm(out)) > STRAIGHT:
-        return rotations.normalize(out)
+    out = joint - first - rotations.dot(joint - first, along) * along
     ahead = np.array([0.0, 0.0, 1.0])
-    return rotations.normalize(ahead - (ahead @ along) * along)
+    straight = rotations.length(out) <= STRAIGHT
+    return rotations.normalize(np.where(straight, ahead - rotations.dot(ahead, along) * along, out))
 
 
 def eased_from(history: History, motion: Motion, skeleton: Skeleton) -> Motion:

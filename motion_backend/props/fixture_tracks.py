@@ -16,7 +16,8 @@ import numpy as np
 
 from motion_backend import rotations
 from motion_backend.body.cast import Role, Worked
-from motion_backend.motion import FPS, Motion
+from motion_backend.motion import FPS, Motion, Skill
+from motion_backend.props.handle_tracks import followed
 from motion_backend.props.prop_frames import PropTrack, runs_of, spans_of
 from motion_backend.props.prop_hands import Hands
 from motion_backend.props.prop_shapes import painted_shape
@@ -36,6 +37,10 @@ IN_THE_WAY: Final = 0.12
 """A door keeps this far from the middle of hips and head (metres)."""
 OVERHEAD: Final = 1.3
 """What reaches no higher opens under a head (metres)."""
+SETS_OFF: Final = 0.15
+"""Who has let go of a door goes on through it once they are this far from where they did (metres)."""
+PASSED: Final = 0.35
+"""Who has passed a door is this far from all of its way (metres)."""
 STEPS: Final = 21
 """Places of a door that are looked at for that."""
 AGAIN: Final = 3.0
@@ -53,6 +58,10 @@ class _Deed:
     first: int
     last: int
     slams: bool
+    passes: bool = False
+    """Whether its door is passed."""
+    along: tuple[int, Array] | None = None
+    """From which frame on a hand takes it along, and how far open it then is."""
 
 
 def fixture_tracks(hands: Hands, motion: Motion, role: Role) -> Iterator[PropTrack]:
@@ -72,6 +81,13 @@ def kind_of(does: str) -> Kind:
     return "light" if does in ("on", "off") else "front"
 
 
+def replaced(role: Role) -> frozenset[str]:
+    """The names of meshes of a home that are not drawn at rest, since they move in a story: leaves of its doors."""
+    doors = [one.piece for one in role.worked.values() if any(front.always for front in mechanisms(one.piece))]
+    names = [door.id.partition("/")[2].removesuffix(" door") for door in doors]
+    return frozenset(f"door {part} {name}" for name in names for part in ("leaf", "handle"))
+
+
 def works(piece: Placed, does: str) -> bool:
     """Whether there is anything of a piece that it can be done to."""
     return any(one.kind == kind_of(does) for one in mechanisms(piece))
@@ -81,11 +97,14 @@ def _deed(hands: Hands, motion: Motion, role: Role, worked: Worked, span: tuple[
     """When a hand is where it reaches in a keyframe; None where it never gets there."""
     side = 0 if worked.hand == "left" else 1
     away = np.linalg.norm(hands.palms[slice(*span), side] - np.array(worked.at), axis=1)
-    if away.min() > NEAR:
+    skill, caption = role.captions.get(int(motion.actions[span[0]]), (None, ""))
+    passes = skill is Skill.LOCO
+    if away.min() > NEAR and not passes:
         return None
     there = span[0] + np.flatnonzero(away <= away.min() + AT)
-    caption = role.captions.get(int(motion.actions[span[0]]), (None, ""))[1]
-    return _Deed(worked, int(there[0]), int(there[-1]), _SLAM.search(caption) is not None)
+    slams = _SLAM.search(caption) is not None
+    along = None if passes and worked.does == "close" else followed(hands, worked, span)
+    return _Deed(worked, int(there[0]), int(there[-1]), slams, passes, along)
 
 
 def _lights(motion: Motion, done: Sequence[_Deed]) -> Iterator[PropTrack]:
@@ -106,14 +125,16 @@ def _fronts(hands: Hands, motion: Motion, done: Sequence[_Deed]) -> Iterator[Pro
     chosen: int | None = None
     by_front: dict[int, list[_Deed]] = {}
     for deed in done:
-        if chosen is None or by_front[chosen][-1].worked.does == "close":
+        if deed.worked.handle is not None:
+            chosen = deed.worked.handle.front
+        elif chosen is None or by_front[chosen][-1].worked.does == "close":
             chosen = _front(found, hands, motion, deed)
         by_front.setdefault(chosen, []).append(deed)
     for number, deeds in sorted(by_front.items()):
         shares = _shares(found[number], hands, motion, deeds)
         shares = 1.0 - shares if found[number].drawn else shares
         for place, moving in enumerate(found[number].moving):
-            yield from _tracks(piece, f"front{number}_{place}", moving, shares)
+            yield from _tracks(piece, f"front{number}_{place}", moving, shares, found[number].always)
 
 
 def _all(piece: Placed, kind: Kind) -> list[Mechanism]:
@@ -185,6 +206,8 @@ def _swings(deeds: Sequence[_Deed], fps: int) -> Iterator[_Swing]:
 
 def _shares(front: Mechanism, hands: Hands, motion: Motion, deeds: Sequence[_Deed]) -> Array:
     """How far open a front is, 0 to 1. (T,)."""
+    if any(deed.along is not None or deed.passes for deed in deeds):
+        return _taken_along(front, hands, motion, deeds)
     shares = np.full(len(motion), float(deeds[0].worked.does == "close"))
     for swing in _swings(deeds, motion.fps):
         if swing.opens:
@@ -194,6 +217,42 @@ def _shares(front: Mechanism, hands: Hands, motion: Motion, deeds: Sequence[_Dee
             frames = np.arange(swing.since, len(motion), dtype=np.float64)
             shares[swing.since :] = shares[swing.since] * left(swing, frames)
     return shares
+
+
+def _taken_along(front: Mechanism, hands: Hands, motion: Motion, deeds: Sequence[_Deed]) -> Array:
+    """The same of one that hands take along, and that who comes in or leaves has open as long as they are in it."""
+    shares = np.full(len(motion), float(deeds[0].worked.does == "close" and not deeds[0].passes))
+    if deeds[0].worked.handle is not None:
+        shares *= deeds[0].worked.handle.share
+    ramp = _eased(np.arange(1, round(MOVES * motion.fps) + 1) / round(MOVES * motion.fps))
+    away = _clearance(front, _bodies(hands, motion, deeds[0].worked.piece, 0, len(motion))).min(axis=1)
+    for deed, following in zip(deeds, [*deeds[1:], None], strict=True):
+        if deed.along is not None:
+            since, along = deed.along
+            shares[since:] = _fitted(along, len(motion) - since)
+        if not deed.passes:
+            continue
+        if deed.worked.does == "close":  # who comes in
+            shares[:] = _fitted(ramp, len(motion))
+        elif deed.along is not None:  # who leaves pushes it wide on the way through
+            let_go = min(deed.along[0] + len(deed.along[1]), len(motion) - 1)
+            gone = np.linalg.norm(motion.root_positions[let_go:] - motion.root_positions[let_go], axis=1) > SETS_OFF
+            sets_off = let_go + int(np.argmax(gone)) if gone.any() else len(motion)
+            shares[sets_off:] += (1.0 - shares[sets_off:]) * _fitted(ramp, len(motion) - sets_off)
+        passed = np.flatnonzero(away[deed.last :] < PASSED)
+        past = deed.last + (int(passed[-1]) + 1 if len(passed) else 0)
+        awaits = following.worked.handle if following is not None and following.worked.does == "close" else None
+        if following is not None and following.along is not None:
+            past = max(min(past, following.along[0] - len(ramp)), 0)
+        if past < len(motion):
+            rest = awaits.share if awaits is not None else 0.0
+            shares[past:] = rest + (shares[past] - rest) * (1.0 - _fitted(ramp, len(motion) - past))
+    return shares
+
+
+def _fitted(shares: Array, frames: int) -> Array:
+    """So many frames of shares (N,), the last of which goes on."""
+    return np.concatenate([shares[:frames], np.full(max(frames - len(shares), 0), shares[-1])])
 
 
 def _eased(shares: Array) -> Array:
@@ -228,12 +287,12 @@ def _opening(front: Mechanism, hands: Hands, motion: Motion, piece: Placed, sinc
     return found
 
 
-def _tracks(piece: Placed, name: str, moving: Moving, shares: Array) -> Iterator[PropTrack]:
-    """Something while it is not at rest."""
+def _tracks(piece: Placed, name: str, moving: Moving, shares: Array, always: bool = False) -> Iterator[PropTrack]:
+    """Something while it is not at rest, or all the time."""
     shape = painted_shape(moving.painted)
     upright = rotations.yaw_to_quat(piece.yaw)
     called = re.sub(r"\W+", "_", f"{piece.id}_{name}")
-    for start, stop in runs_of(shares > SHUT):
+    for start, stop in runs_of((shares > SHUT) | always):
         share = shares[start:stop]
         places = np.array(moving.pivot) + share[:, None] * np.array(moving.way)
         turns = rotations.compose(upright, rotations.yaw_to_quat(moving.turn * share))

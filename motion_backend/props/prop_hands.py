@@ -40,6 +40,8 @@ class Hands:
     """(T, 2, 3) from the shoulder in the chest's frame, arm lengths: to the left, up, ahead."""
     palms: Array
     """(T, 2, 3) the middle of each palm in the world."""
+    wrists_at: Array
+    """(T, 2, 3) of each wrist."""
     turns: Array
     """(T, 2, 4) of the wrists."""
     chest: Array
@@ -64,6 +66,7 @@ class Hands:
             fps=motion.fps,
             scale=skeleton.scale,
             wrists=lifted / (ARM_LENGTH * skeleton.scale),
+            wrists_at=positions[:, wrists],
             palms=positions[:, wrists] + rotations.rotate(turns, middles),
             turns=turns,
             chest=chest,
@@ -96,7 +99,7 @@ class Hands:
 
     def _part(self, start: int, stop: int) -> Hands:
         cut = slice(start, stop)
-        arrays = (self.wrists, self.palms, self.turns, self.chest, self.head, self.head_at)
+        arrays = (self.wrists, self.palms, self.wrists_at, self.turns, self.chest, self.head, self.head_at)
         return Hands(self.fps, self.scale, *(array[cut] for array in arrays))
 
     def tipping(self, degrees: float, palm: Array) -> Array:

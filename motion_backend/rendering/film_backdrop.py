@@ -11,11 +11,14 @@ import numpy as np
 from motion_backend.rendering.film_picture import Planes, split
 from motion_backend.rendering.light_values import Cutting, Drawn, Shading
 from motion_backend.rendering.rasterizer import Camera, Real
-from motion_backend.rendering.renderer import PALETTE, STUDIO, Solid, Still, to_linear, to_srgb
+from motion_backend.rendering.renderer import FILL, STUDIO, Solid, Still, to_linear, to_srgb
 from motion_backend.rendering.shadow_map import ShadowMap
 
 SHADES = 8192
 """Steps of linear light that become bytes; finer than a byte's at its darkest."""
+LIFTED, DARK = 0.7, 0.10
+"""By which share the darkest colours of a body are brighter in a film, and how bright those are whose share is a third
+of that: on a screen one would see no face in them."""
 NEAR = 0.1
 """Metres before the eye; of a body the faces that are nearer, or behind it, are not drawn."""
 
@@ -73,7 +76,7 @@ class Backdrop:
         assert body.normals is not None
         camera, (width, height) = self.camera, self.size
         faces = body.faces
-        colors = to_linear(np.broadcast_to(np.asarray(body.color)[..., :3], (len(faces), 3))).astype(np.float32)
+        colors = _lifted(to_linear(np.broadcast_to(np.asarray(body.color)[..., :3], (len(faces), 3))))
         viewed = camera.view(np.asarray(body.vertices, dtype=np.float64))
         points = ahead = camera.project(viewed, (2 * width, 2 * height))
         if viewed[:, 2].min() < NEAR:  # the feet of a sleeper whose face is looked at from near
@@ -93,10 +96,16 @@ class Backdrop:
         draw_body(points, faces, nearest, best)
         sun, sky = (_with_body(found, cutting) for found, cutting in zip(self.maps, cuttings, strict=True))
         light = np.empty(len(points), dtype=np.float32)
-        body_light(body.vertices, body.normals, np.array(camera.eye), sun, sky, PALETTE, light)
+        body_light(body.vertices, body.normals, np.array(camera.eye), sun, sky, FILL, light)
         planes = np.zeros((len(faces), 3))
         light_planes(points, faces, light, planes)
         return Drawn(nearest, low, planes, colors)
+
+
+def _lifted(colors: Real) -> Real:
+    """Linear colours (F, 3) with their dark ones a little brighter."""
+    bright = colors.max(axis=1, keepdims=True)
+    return np.asarray(colors * (1.0 + LIFTED * np.exp(-bright / DARK)), dtype=np.float32)
 
 
 def _cutting(found: ShadowMap, body: Solid) -> Cutting:

@@ -4,8 +4,8 @@ a face whose mood changes or that is done something with, a hand that touches.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from itertools import pairwise
 from typing import Final
@@ -17,6 +17,7 @@ from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Emotion, Motion, PhaseKind
 from motion_backend.props import PropTrack
 from motion_backend.props.prop_frames import runs_of
+from motion_backend.rendering.face_deed import STILL, face_deed
 from motion_backend.rendering.film_edit import FilmEdit, Frames
 from motion_backend.rendering.hand_deed import HANDS, Blow, from_hanging
 from motion_backend.rotations import Array
@@ -32,10 +33,8 @@ AGAIN: Final = 6.0
 """Seconds before a face whose mood stays is looked at from near again."""
 LENGTHENED: Final = 1.8
 """How many times as long a look from near may be where it is all of a shot."""
-STILL: Final = 0.3
-"""Metres that a face moves in that while: a camera that stands still would lose it."""
 HELD: Final = 0.5
-"""The same of a hand that touches."""
+"""Metres that a hand which touches moves in that while: a camera that stands still would lose it."""
 HELD_SECONDS: Final = 1.0
 """For which something is in a hand that must be seen."""
 LIFTED: Final = 0.28
@@ -76,6 +75,8 @@ class Framing:
     """Frames in which these hands are what it is about; of a look from near all are."""
     gesture: bool = False
     """Whether these hands neither touch nor hold anything."""
+    of_face: bool = False
+    """Whether it is a deed of the face, of which there is no better picture than from near."""
 
 
 @dataclass(frozen=True)
@@ -107,22 +108,25 @@ def film_cuts(
 ) -> Iterator[Cut]:
     """What an edit keeps of a motion, or all, whose joints are (T, 22, 3) in the world and whose actions begin at
     `starts`; `props` are in its hands."""
-    finder = _Finder(motion, joints, role.emotions, role.asleep, tuple(props))
+    finder = _Finder(motion, joints, role, tuple(props))
     seen: Emotion | None = None
-    before: Framing | None = None
+    found: list[Cut] = []
     kept = (edit or FilmEdit.whole(len(motion))).kept
     for start, stop in (window for part in kept for window in _windows(motion, starts, part)):
         mood = finder.mood((start + stop) // 2)
         close = finder.close_up(start, stop, mood is not seen)
+        before = next((cut.close for cut in reversed(found) if cut.close is not None), None)
         if close is not None and before is not None:
             # Two in a row would leave no one know where all this is; what the head does is a matter of now and then.
             rest = (close.start - before.stop) / motion.fps
             again = mood is seen if close.subject is Subject.FACE else before.subject is Subject.HANDS
-            if rest <= 0 or (again and rest < AGAIN):
+            if close.of_face and rest < SHORTEST and found[-1].close is before:
+                found[-1] = replace(found[-1], close=None)  # The face is seen from near as it does it, and not before.
+            elif rest <= 0 or (again and rest < AGAIN and not close.of_face):
                 close = None
-        yield Cut(start, stop, close, finder.deed(start, stop))
-        before = close or before
+        found.append(Cut(start, stop, close, finder.deed(start, stop)))
         seen = mood if close is not None and close.subject is Subject.FACE else seen
+    return iter(found)
 
 
 def _windows(motion: Motion, starts: Sequence[int], part: Frames) -> Iterator[Frames]:
@@ -153,17 +157,19 @@ class _Finder:
 
     motion: Motion
     joints: Array
-    emotions: Mapping[int, Emotion]
-    asleep: frozenset[int]
+    role: Role
     props: tuple[PropTrack, ...]
 
     def mood(self, frame: int) -> Emotion:
         """That of the keyframe a frame serves."""
-        return self.emotions.get(int(self.motion.actions[frame]), Emotion.NEUTRAL)
+        return self.role.emotions.get(int(self.motion.actions[frame]), Emotion.NEUTRAL)
 
     def close_up(self, start: int, stop: int, changed: bool) -> Framing | None:
-        """The hand where something is touched, else the face where the mood is another or the head is what matters,
-        else the hands in which something is."""
+        """The face where it does what it is about, else the hand where something is touched, else the face where the
+        mood is another or the head is what matters, else the hands in which something is."""
+        own = self._own_face(start, stop)
+        if own is not None:
+            return own
         if self._lies(start, stop):
             return self._face(start, stop, changed)
         if self._strikes(start, stop):
@@ -232,7 +238,7 @@ class _Finder:
     def _face(self, start: int, stop: int, changed: bool) -> Framing | None:
         near = np.linalg.norm(self.joints[start:stop, HANDS] - self.joints[start:stop, [_HEAD]], axis=-1) < TO_HEAD
         busy = near.mean(axis=0) > 0.4
-        asleep = int(self.motion.actions[(start + stop) // 2]) in self.asleep
+        asleep = int(self.motion.actions[(start + stop) // 2]) in self.role.asleep
         if not (changed or busy.any() or asleep):
             return None
         long = round(CLOSE_SECONDS * self.motion.fps)
@@ -245,6 +251,17 @@ class _Finder:
         if gesture is not None and not hands:
             hands = gesture.hands  # a face whose hands say something is seen with them
         return self._around(start, stop, middle, Subject.FACE, hands, STILL)
+
+    def _own_face(self, start: int, stop: int) -> Framing | None:
+        """A deed of the face, with the hands that are at it."""
+        found = face_deed(self.motion, self.joints, self.role, start, stop, round(SHORTEST * self.motion.fps))
+        if found is None:
+            return None
+        first, last = found
+        near = np.linalg.norm(self.joints[first:last, HANDS] - self.joints[first:last, [_HEAD]], axis=-1) < TO_HEAD
+        hands = tuple(np.asarray(HANDS)[near.mean(axis=0) > 0.4].tolist())
+        gesture = None if hands else self._gesture(first, last)
+        return Framing(first, last, Subject.FACE, gesture.hands if gesture is not None else hands, of_face=True)
 
     def _holding(self, start: int, stop: int, seconds: float) -> Iterator[Framing]:
         """Frames in which something is in some hands for so long."""

@@ -48,18 +48,21 @@ def film_frames(
 
     with ThreadPoolExecutor(WORKERS) as pool:
         waiting: deque[Future[list[Planes]]] = deque()
-        before: list[tuple[FilmShot, list[PropTrack], Future[Backdrop]]] = []
+        before: list[tuple[FilmShot, list[PropTrack], int, Future[Backdrop]]] = []
         for shot in shots:
             for start in range(shot.start, shot.stop, BATCH):
                 frames = range(start, min(start + BATCH, shot.stop))
                 lying = acting.lying(frames.start, frames.stop)
                 # Behind a close-up the shot that it stands in goes on.
-                same = (drawn for one, here, drawn in before if one.scene is shot.scene and _same(here, lying))
+                same = (
+                    drawn for one, here, at, drawn in before
+                    if one.scene is shot.scene and _same(here, at, lying, start)
+                )  # fmt: skip
                 if (scene := next(same, None)) is None:
                     whole = [*shot.scene, *lying_solids(lying, start, shot.camera)]
                     scene = pool.submit(Backdrop.of, whole, shot.camera, size)
-                if not before or before[-1][2] is not scene:
-                    before = [*before[-1:], (shot, lying, scene)]
+                if not before or before[-1][3] is not scene:
+                    before = [*before[-1:], (shot, lying, start, scene)]
                 waiting.append(pool.submit(batch, scene, frames, lying))
                 while len(waiting) > AHEAD:
                     yield from waiting.popleft().result()
@@ -67,8 +70,14 @@ def film_frames(
             yield from waiting.popleft().result()
 
 
-def _same(some: Sequence[PropTrack], others: Sequence[PropTrack]) -> bool:
-    return len(some) == len(others) and all(one is other for one, other in zip(some, others, strict=True))
+def _same(some: Sequence[PropTrack], at: int, others: Sequence[PropTrack], now: int) -> bool:
+    """Whether what lies at one frame is what lies at another, and where it did: a door may have shut between."""
+    return len(some) == len(others) and all(
+        one is other
+        and np.array_equal(one.positions[at - one.start], one.positions[now - one.start])
+        and np.array_equal(one.turns[at - one.start], one.turns[now - one.start])
+        for one, other in zip(some, others, strict=True)
+    )
 
 
 def compile_film() -> None:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, PhaseKind
-from motion_backend.props import PropTrack, prop_points, prop_tracks
+from motion_backend.props import PropTrack, prop_points, prop_tracks, replaced
 from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
 from motion_backend.rendering.film_counterpart import Counterpart, Kind
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
@@ -35,18 +35,23 @@ from motion_backend.skeleton import INDEX
 if TYPE_CHECKING:
     from scene_graphs.home import Home
 
-PITCHES: Final = (0.16, 0.34)
-"""From above, in radians: near the eyes of who stands, and over low furniture."""
+EYES: Final = (1.2, 1.45, 1.7)
+"""Metres that a camera stands high: at the eyes of who sits, of who stands, and of who looks over low furniture."""
+LEVEL: Final = (0.12, 3.0)
+"""From how many radians from above on it counts to look down, and what each of those counts."""
 CLOSE_PITCHES: Final = (0.06, 0.30), (0.06, 0.30, 0.60, 0.95)
 """The same from near, of who is upright, whose crown nobody wants to see, and of who lies."""
+FROM_BELOW, BOWED = (-0.10, 0.06, 0.24), -0.35
+"""Of a head that is bowed, whose face is seen from below, and from which height on of where it looks it is."""
 NEAREST: Final = 2.3
 """Metres from the middle of what is seen."""
 CLOSEST: Final = {Subject.FACE: 1.25, Subject.HANDS: 1.2}
 """The same from near."""
 NO_LONGER_NEAR: Final = 2.6
 """Metres from which on a look from near shows no more than one of the whole: who stoops moves head and hand far."""
-FRAME: Final = 0.84
-"""The share of a picture that all of a body keeps within."""
+FRAME, OVER_WORDS = 0.84, (0.88, 0.64)
+"""The share of a picture that all of a body keeps within, to either side and of its upper and of its lower half: below
+that words are told."""
 SAMPLES: Final = 5
 """Frames of a shot that are looked at."""
 ALIKE, AS_NEAR = np.radians(30.0), 1.4
@@ -60,6 +65,8 @@ FAR: Final = 0.14
 """What a metre of distance counts: faces are seen from near."""
 REPEATED: Final = 1.6
 """What a jump cut counts."""
+LEFT_OUT: Final = 4.0
+"""The same where time is left out between: who was here is there, as if by magic."""
 REVERSED: Final = 3.0
 """What it counts to go on from the other side, where who went to the right goes to the left."""
 SIDE: Final = 0.25
@@ -72,11 +79,17 @@ WIDEST_NEAR: Final = {Subject.FACE: WIDEST, Subject.HANDS: 2.0}
 """The turn from which nothing is looked at from near: of a face nothing is seen, of a hand a back before it."""
 WATCHED: Final = 3.0
 """What it counts to see the face of who does not walk, in a shot of the whole,"""
+COMING: Final = 0.8
+"""What it counts that somebody who walks does not walk away,"""
 QUARTER, PROFILE, BEYOND = (0.8, 1.6), (1.3, 1.8), (2.0, 2.5)
 """from the first turn (radians) on the less, and from the second not: of who does nothing with their hands, of who
 does, and of who does it to what stands before them."""
 HAND_HIDDEN: Final = 2.0
 """What it counts to have furniture before the hands that do something."""
+FEET, KNEES = ([INDEX[f"{side}_{name}"] for side in ("left", "right") for name in names]
+               for names in (("ankle", "foot"), ("knee",)))  # fmt: skip
+ROOTED: Final = 0.12
+"""Metres up to which hips and feet stay where they are: their picture ends at the knees."""
 EVERY: Final = 4
 """Frames between two at which it is asked how far a body goes."""
 ALONG: Final = 0.8
@@ -85,8 +98,8 @@ STEEP, LIES = (1.0, 0.3), 0.5
 """What a radian from above counts from near, of who is upright and of who lies: whose head's up is less than that."""
 FROM_FEET, OBLIQUE = 4.0, 0.3
 """What it counts to look at who lies along their legs, soles first, and the cosine from which on that begins."""
-FROM_INSIDE: Final = 1.0
-"""What it counts to be in the room, from near."""
+INSIDE, FROM_INSIDE = 0.6, 1.0
+"""What it counts to be in the room, of a look at the whole and from near."""
 AT_DOOR: Final = 3.0
 """What it counts in the first shot to see the door by which somebody comes in."""
 TO_COUNTERPART: Final = 4.0
@@ -103,6 +116,8 @@ ASIDE: Final = (0.19, 0.12, 0.06)
 """Radians by which a camera is turned to the side, at most so that a body that was in the middle is at a third."""
 OFF_CENTRE: Final = 0.2
 """What that counts."""
+STEEPEST: Final = 0.45
+"""The sine of the angle from above at which a camera looks at the whole of a body, at most."""
 EXACT: Final = 0.02
 """Metres that what was just within a picture may be beyond, where it is turned."""
 TRIES: Final = 12
@@ -132,17 +147,22 @@ def film_shots(
     positions, turns = motion.skeleton.forward_kinematics(motion.root_positions, motion.local_rotations)
     joints = positions.astype(np.float64)
     props = prop_tracks(motion, role)
-    director = _Director(motion, joints, turns, FilmSet.of(home), aspect, props)
+    director = _Director(motion, joints, turns, FilmSet.of(home, replaced(role)), aspect, props)
     before: FilmShot | None = None
     for cut in film_cuts(motion, joints, starts, role, edit, props):
-        whole = director.shot(cut.whole, before)
-        for part in _parts(cut, whole, director):
+        for part in _parts(cut, director, before):
             yield part
             before = part
 
 
-def _parts(cut: Cut, whole: FilmShot, director: _Director) -> Iterator[FilmShot]:
-    """A shot of the whole, with what is worth it seen from near, if any camera sees that."""
+def _parts(cut: Cut, director: _Director, before: FilmShot | None) -> Iterator[FilmShot]:
+    """A shot of the whole, with what is worth it seen from near, if any camera sees that; nothing else where that is
+    all of it."""
+    if cut.close is not None and (cut.close.start, cut.close.stop) == (cut.start, cut.stop):
+        close = director.close_up(cut.close, before)
+        yield director.shot(cut.whole, before) if close is None else close
+        return
+    whole = director.shot(cut.whole, before)
     close = director.close_up(cut.close, whole) if cut.close is not None else None
     if close is None:
         yield whole
@@ -173,10 +193,10 @@ class _Director:
         who does not walk one with the face, if there is any."""
         return self._best(framing, self._views(framing, before))[0]
 
-    def close_up(self, close: Framing, before: FilmShot) -> FilmShot | None:
+    def close_up(self, close: Framing, before: FilmShot | None) -> FilmShot | None:
         """The same from near; None where something hides it from all cameras, or is in the way of all, and of who
         looks out of a window or is at a door, which would not be seen."""
-        there = self._counterpart(close)
+        there = None if close.of_face else self._counterpart(close)
         views = self._near(close, before) if there is None or there.kind is Kind.MIRROR else []
         if not views:
             return None
@@ -188,7 +208,7 @@ class _Director:
         that shows most; and whether it is enough."""
         start, stop = framing.start, framing.stop
         bodies = Appearances.of(self.motion, framing, self.aspect, self.props)
-        counterpart = self._counterpart(framing)
+        counterpart = None if framing.of_face else self._counterpart(framing)
         if counterpart is not None:
             bodies = replace(bodies, face=None if counterpart.kind is Kind.WINDOW else bodies.face, profile=True)
         telling = [view for view in views if view.tells]
@@ -199,7 +219,9 @@ class _Director:
             best = max([best, *others], key=lambda one: one.worth)
         aside = [self._looked(framing, bodies, view) for view in best.view.aside(self.aspect)]
         best = max([best, *aside], key=lambda one: one.worth)
-        return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), best.worth[0][0]
+        # Hands may be before a face that weeps, and a head that sank shows its crown.
+        enough = any(best.worth[0]) if framing.of_face else best.worth[0][0]
+        return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), enough
 
     def _looked(self, framing: Framing, bodies: Appearances, view: _View) -> _Looked:
         """A view of which a small picture was looked at."""
@@ -226,10 +248,11 @@ class _Director:
         entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
         there = self._counterpart(framing)
         openings = [one.corners for one in (entrance, there) if one is not None]
-        points = np.concatenate([self._reached(start, stop), *openings])
+        points = np.concatenate([self._reached(framing), *openings])
         behind = there is not None and there.kind is Kind.WINDOW
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
+        way = rotations.rotate(self.turns[frames, 0], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
         front = self._front(framing, sight)
         before_it = front is not None or there is not None
@@ -238,13 +261,16 @@ class _Director:
         lying = rotations.rotate(self.turns[frames, 0], np.array([0.0, 1.0, 0.0]))
         liked = liking(self.motion, Shot(int(frames[len(frames) // 2])), yaws)
         scored = []
-        for pitch in PITCHES:
+        for eye in EYES:
             for index, yaw in enumerate(yaws.tolist()):
-                camera = _fitted(yaw, pitch, points, self.aspect, NEAREST)
-                score = float(liked[index]) + sight.score(camera, poses)
+                camera = _standing(yaw, eye, points, self.aspect, NEAREST)
+                score = float(liked[index]) + sight.score(camera, poses) - _down(camera)
+                score += INSIDE * sight.indoors(camera)
                 score -= FAR * _distance(camera) + FROM_FEET * _from_feet(lying, -camera.axes[2])
                 if len(watched):
                     score += WATCHED * _is_faced(ahead, -camera.axes[2], widest)
+                else:
+                    score += COMING * _is_faced(way, -camera.axes[2], PROFILE)
                 if front is not None:
                     score += TO_FRONT * front.seen(camera)
                 if framing.deed is not None:
@@ -256,12 +282,20 @@ class _Director:
                 scored.append(_View(score, camera, points, tells))
         return _sorted(_frontal(scored, front))
 
-    def _reached(self, start: int, stop: int) -> Array:
-        """Where joints and the crown go in some frames, at the height of a jump too. (N, 3)."""
+    def _reached(self, framing: Framing) -> Array:
+        """Where joints and the crown go in some frames, at the height of a jump too, and what is in the hands; without
+        the feet of who stands or sits still and does something with their hands. (N, 3)."""
+        start, stop = framing.start, framing.stop
         frames = np.arange(start, stop, EVERY)
         high = start + int(self.joints[start:stop, INDEX["head"], 1].argmax())
         frames = np.unique([*frames.tolist(), high, stop - 1])
-        return np.concatenate([self.joints[frames].reshape(-1, 3), _crowns(self.joints[frames], self.turns[frames])])
+        joints, held = self.joints[frames], [prop_points(self.props, frame) for frame in frames[::EVERY].tolist()]
+        rooted = np.ptp(joints[:, [0, *FEET]], axis=0).max() < ROOTED
+        over_feet = joints[:, FEET, 1].max() < joints[:, 0, 1].min()  # of who does not lie
+        low = min((float(points[:, 1].min()) for points in held if len(points)), default=np.inf)
+        if framing.deed is not None and rooted and over_feet and low > joints[:, KNEES, 1].min():
+            joints = np.delete(joints, FEET, axis=1)
+        return np.concatenate([joints.reshape(-1, 3), _crowns(self.joints[frames], self.turns[frames]), *held])
 
     def _watched(self, frames: NDArray[np.int64], deed: Frames | None) -> NDArray[np.int64]:
         """Those of some frames in which nobody walks, or hands do what it is about."""
@@ -301,7 +335,7 @@ class _Director:
         speed = self.motion.fps * np.linalg.norm(np.diff(hands, axis=0), axis=-1)
         return bool(np.median(speed, axis=0).max() > MOVES)
 
-    def _near(self, close: Framing, before: FilmShot) -> list[_View]:
+    def _near(self, close: Framing, before: FilmShot | None) -> list[_View]:
         """Cameras near a face, a quarter turned, or beside an arm that touches, with whose head and
         shoulders it is, best first; none is in furniture."""
         frames = _sampled(close.start, close.stop)
@@ -314,9 +348,16 @@ class _Director:
         points = np.concatenate([_head(poses, turns), hands, *held])
         ahead = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
         sight = self.set.sight(_middle(points))
-        front = self._front(close, sight)
-        upright = rotations.rotate(turns[:, INDEX["head"]], np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
-        pitches, steep = CLOSE_PITCHES[0 if upright else 1], STEEP[0 if upright else 1]
+        front = None if close.of_face else self._front(close, sight)
+        tall = turns[:, 0 if close.of_face else INDEX["head"]]  # a head may hang between the knees of who sits
+        upright = rotations.rotate(tall, np.array([0.0, 1.0, 0.0]))[:, 1].mean() > LIES
+        pitches: Sequence[float] = CLOSE_PITCHES[0 if upright else 1]
+        steep = STEEP[0 if upright else 1]
+        bowed = close.of_face and upright and ahead[:, 1].mean() < BOWED
+        if bowed:  # who is before the trunk, and lower, sees most of it
+            ahead = rotations.rotate(turns[:, 0], np.array([0.0, 0.0, 1.0])) * [1.0, 0.0, 1.0]
+            ahead /= np.maximum(np.linalg.norm(ahead, axis=1, keepdims=True), 1e-9)
+            pitches = FROM_BELOW
         scored = []
         for pitch in pitches:
             for yaw in _yaws(front).tolist():
@@ -326,7 +367,7 @@ class _Director:
                 towards = -camera.axes[2]
                 if float(np.mean(_turns(ahead, towards))) > WIDEST_NEAR[close.subject]:
                     continue
-                score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * pitch
+                score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * abs(pitch)
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score += TO_FRONT * front.seen(camera) if front is not None else 0.0
@@ -341,7 +382,8 @@ class _Director:
             return 0.0
         now, then = self._across(camera, frame), self._across(before.camera, before.stop - 1)
         turned = min(abs(now), abs(then)) > SIDE and now * then < 0
-        return REPEATED * are_alike(camera, before.camera) + REVERSED * turned
+        jump = LEFT_OUT if frame > before.stop else REPEATED
+        return jump * are_alike(camera, before.camera) + REVERSED * turned
 
     def _across(self, camera: Camera, frame: int) -> float:
         """How far to the right of a picture the body goes, or is turned if it does not go, -1 to 1."""
@@ -457,14 +499,41 @@ def _turns(ahead: Array, towards: Array) -> Array:
     return np.asarray(np.arccos(np.clip(ahead @ towards, -1.0, 1.0)))
 
 
-def _fitted(yaw: float, pitch: float, points: Array, aspect: float, nearest: float) -> Camera:
-    """As near as all points (N, 3), with the skin around them, stay well within the picture."""
+def _fitted(
+    yaw: float, pitch: float, points: Array, aspect: float, nearest: float, halves: tuple[float, float] = (FRAME, FRAME)
+) -> Camera:
+    """As near as all points (N, 3), with the skin around them, stay well within the picture: within so much of its
+    upper and of its lower half."""
     target = _middle(points)
-    across, up, ahead = np.moveaxis((points - target) @ orbit(target, 1.0, yaw, pitch).axes.T, -1, 0)
-    wide = np.tan(FOV / 2) * FRAME
-    # A point is within the picture where its distance to the axis, with skin, is at most `wide` times its depth.
-    asked = [(np.abs(up) + MARGIN) / wide - ahead, (np.abs(across) + MARGIN) / (wide * aspect) - ahead, MARGIN - ahead]
-    return orbit(target, max(nearest, float(np.max(asked))), yaw, pitch, FOV)
+    axes = orbit(target, 1.0, yaw, pitch).axes
+    across, up, ahead = np.moveaxis((points - target) @ axes.T, -1, 0)
+    upper, lower = np.tan(FOV / 2) * np.array(halves)
+    half, wide = (upper + lower) / 2, np.tan(FOV / 2) * FRAME * aspect
+    # A point is within the picture where its distance to the axis, with skin, is at most `upper`, `lower` or `wide`
+    # times its depth; the axis goes below the middle by so much that both halves are as full.
+    asked = [
+        (up + MARGIN - upper * ahead) / half, (MARGIN - up - lower * ahead) / half,
+        (np.abs(across) + MARGIN) / wide - ahead, MARGIN - ahead,
+    ]  # fmt: skip
+    distance = max(nearest, float(np.max(asked)))
+    x, y, z = (np.asarray(target) - (upper - lower) / 2 * distance * axes[1]).tolist()
+    return orbit((x, y, z), distance, yaw, pitch, FOV)
+
+
+def _standing(yaw: float, eye: float, points: Array, aspect: float, nearest: float) -> Camera:
+    """The same from a camera that stands so high (metres), or that looks level at what is higher; told words lie on
+    nothing of it."""
+    camera, pitch = _fitted(yaw, 0.1, points, aspect, nearest, OVER_WORDS), 0.1
+    for _ in range(2):
+        pitch = float(np.arcsin(np.clip((eye - camera.target[1]) / _distance(camera), 0.0, STEEPEST)))
+        camera = _fitted(yaw, pitch, points, aspect, nearest, OVER_WORDS)
+    return camera
+
+
+def _down(camera: Camera) -> float:
+    """What it counts against a camera to look down."""
+    free, steep = LEVEL
+    return steep * max(-float(np.arcsin(camera.axes[2][1])) - free, 0.0)
 
 
 def _turned(camera: Camera, radians: float) -> Camera:
@@ -477,10 +546,8 @@ def _turned(camera: Camera, radians: float) -> Camera:
 def _holds(camera: Camera, points: Array, aspect: float) -> bool:
     """Whether all points (N, 3), with the skin around them, are well within the picture."""
     across, up, ahead = np.moveaxis(camera.view(points), -1, 0)
-    wide = np.tan(FOV / 2) * FRAME * ahead
-    return bool(
-        (np.abs(up) + MARGIN <= wide + EXACT).all() and (np.abs(across) + MARGIN <= wide * aspect + EXACT).all()
-    )
+    upper, lower, wide = (np.tan(FOV / 2) * share * ahead + EXACT - MARGIN for share in (*OVER_WORDS, FRAME * aspect))
+    return bool((up <= upper).all() and (-up <= lower).all() and (np.abs(across) <= wide).all())
 
 
 def _distance(camera: Camera) -> float:

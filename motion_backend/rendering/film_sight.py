@@ -36,6 +36,8 @@ NEAREST: Final = 0.06
 ASKED: Final = {Subject.BODY: (0.4, 0.5), Subject.FACE: (0.0, 0.7), Subject.HANDS: (0.0, 0.25)}
 """The shares of the near side of a body, and of its head or of its hands, from which they count as shown: who sits
 behind a table is."""
+COVERED: Final = 0.25
+"""The same of a head whose face does something: the hands of who weeps are before it."""
 ENOUGH: Final = 0.96
 """The share of looks in which it is."""
 HALF_HIDDEN: Final = 0.6
@@ -71,7 +73,7 @@ BEFORE: Final = 0.86
 """Up to which share of the way to the body something is in the foreground,"""
 LOW, TALL = 0.3, 0.8
 """from which height on (metres), and from which wholly: a rug is not, a bed hardly, a wardrobe is."""
-FOREGROUND: Final = 10.0
+FOREGROUND: Final = 14.0
 """What it counts to have nothing but foreground in the picture."""
 RING: Final = (1.15, 2.3)
 """From how many radii of a head on, and up to how many, what is behind it is looked at,"""
@@ -144,6 +146,8 @@ class Appearances:
     """In which frames they do. (T,)."""
     held: tuple[Array, ...] = ()
     """Points of what is in the hands, (N, 3) each, of as many frames; N may be none."""
+    of_face: bool = False
+    """Whether it is a deed of the face."""
     profile: bool = False
     """Whether a face is asked for no more than in profile, beside what it looks at."""
 
@@ -162,7 +166,7 @@ class Appearances:
         hand, doing = _doing(mesh.joints[:, 0], framing, frames)
         return Appearances(
             vertices, normals, areas, part, head, legs, aspect, mesh.faces, framing.subject,
-            head & (mesh.normals[:, 2] > FRONT), _watched(motion, framing, frames), hand, doing, held,
+            head & (mesh.normals[:, 2] > FRONT), _watched(motion, framing, frames), hand, doing, held, framing.of_face,
         )  # fmt: skip
 
     @cached_property
@@ -201,7 +205,8 @@ class _Picture:
     def look(self) -> Look:
         """What it shows of the bodies."""
         bodies, camera, shares = self.bodies, self.camera, self.shares
-        seen = (shares >= ASKED[bodies.subject]).all(axis=1)
+        asked = (0.0, COVERED) if bodies.of_face else ASKED[bodies.subject]
+        seen = (shares >= asked).all(axis=1)
         before = float((self.near > 1.0 / (MUCH * np.linalg.norm(np.subtract(camera.eye, camera.target)))).mean())
         if bodies.subject is Subject.FACE:
             before += self._legs_share()

@@ -179,8 +179,9 @@ class Prop:
         return bool(nearer > 0 and self.high[1] > 0.1)
 
 
-def home_props(home: Home) -> list[Prop]:
-    """Everything of a home that can be drawn; walls, what hangs on them and lamps under the ceiling cast no shadow."""
+def home_props(home: Home, but: Collection[str] = ()) -> list[Prop]:
+    """Everything of a home that can be drawn `but` meshes of these names; walls, what hangs on them and lamps under
+    the ceiling cast no shadow."""
     from scene_graphs.meshes.furniture_mesh import home_meshes
     from scene_graphs.meshes.interior_mesh import stump_meshes
 
@@ -193,7 +194,7 @@ def home_props(home: Home) -> list[Prop]:
     borne = {placed.id: Borne(placed, walls) for placed, walls in against if walls}
     hung = {placed.id: Boxes.of((placed,)).wider(HUNG_FREE) for placed in home.objects if placed.category in HUNG}
     props = []
-    for mesh in home_meshes(home):
+    for mesh in (one for one in home_meshes(home) if one.name not in but):
         low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
         middle = (float(low[0] + high[0]) / 2, float(low[2] + high[2]) / 2)
         hangs = bool(sides) and mesh.name.startswith(ON_WALLS)
@@ -218,17 +219,20 @@ def around(
 ) -> list[Solid]:
     """What is within reach of the camera's target, without what stands before the points (N, 3) of a body in a room:
     of a wall the foot is left, and what stands tall against it goes with it, unless the body is at that."""
-    target = np.asarray(camera.target)
     shown = []
-    for prop in props:
-        gap = np.maximum(np.maximum(prop.low - target, target - prop.high), 0.0)
-        if np.hypot(gap[0], gap[2]) > reach:
-            continue
+    for prop in within_reach(props, camera, reach):
         if not prop.stands_before(camera, points, room):
             shown.append(prop.solid)
         elif prop.stump is not None:
             shown.append(prop.stump)
     return shown
+
+
+def within_reach(props: Sequence[Prop], camera: Camera, reach: float) -> list[Prop]:
+    """What is, at least in part, no farther from a camera's target."""
+    target = np.asarray(camera.target)
+    gaps = (np.maximum(np.maximum(prop.low - target, target - prop.high), 0.0) for prop in props)
+    return [prop for prop, gap in zip(props, gaps, strict=True) if np.hypot(gap[0], gap[2]) <= reach]
 
 
 def save_png(picture: NDArray[np.uint8], path: Path | str) -> Path:

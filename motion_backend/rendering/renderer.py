@@ -21,6 +21,8 @@ from motion_backend.rotations import Array
 Image = NDArray[np.uint8]
 
 SUN_LIGHT, SKY_LIGHT, BOUNCE_LIGHT, CAMERA_LIGHT = 0.70, 0.45, 0.24, 0.12
+FILL_LIGHT = 0.34
+"""What the camera adds to it where a film looks at somebody."""
 GRID = 0.5
 """Metres between the floor's lines."""
 HORIZON = np.array([0.90, 0.91, 0.92])
@@ -212,3 +214,5 @@ STUDIO: Final = PALETTE._replace(
     zenith=to_linear(STUDIO_ZENITH).astype(np.float32), rise=STUDIO_RISE,
 )  # fmt: skip
 """No lines on floors, and a sky."""
+FILL: Final = PALETTE._replace(camera=FILL_LIGHT)
+"""What lights the body of a film: a lamp beside the camera, or a dark face would be a hole in a dark wall."""

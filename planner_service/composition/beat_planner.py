@@ -6,7 +6,7 @@ for (SIMS 3.2).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -17,6 +17,7 @@ from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_reader import DeedReader, classifier_of, shown_by
 from planner_service.composition.earlier_deeds import with_its_noun
 from planner_service.composition.gainsaid import is_gainsaid
+from planner_service.composition.heard_events import with_reactions
 from planner_service.composition.held_things import as_hands_hold, is_handled, with_things
 from planner_service.composition.keyframe_writer import EXPRESSED, KeyframeWriter, Part
 from planner_service.composition.llm_beats import PlannedBeat, PlannedTheme, plan_beats
@@ -34,10 +35,16 @@ from planner_service.scripts.script_repair import repair
 from planner_service.scripts.script_search import rank
 from planner_service.themes.beats import EXPRESSIONS, LANGUAGE, ReadBeat, ThemeError, beats_of, clean, read_beat
 from planner_service.themes.details import details_of
+from planner_service.themes.lexicon import is_noun, lemma_of
+from planner_service.themes.protagonist import is_person, names_somebody
 from planner_service.themes.theme_words import theme_words
+from planner_service.themes.things import things, things_called
+from planner_service.themes.verb_finder import tokens_of
 from scene_graphs import furniture
 from scene_graphs.furniture import canonical_room
 
+FACES: Final = ("smile", "grin", "beam", "smirk", "frown", "scowl")
+"""What is seen in a face, whatever else is done: nobody laughs or sobs in that alone."""
 _OFFERED: Final = 6
 """Short scripts that are looked at for a beat."""
 _LIKELY: Final = 3
@@ -71,11 +78,15 @@ def serve_beats(
         raise ThemeError(f"nothing in it can be acted by a body at home. {told}. {LANGUAGE}")
     acted, repairs = repair(writer.keyframes)
     acted = with_worked(read, with_things(read, acted))
+    acted, reacted = with_reactions(read, acted if planned else as_hands_hold(acted))
+    beats = _with_reasons(read, writer, acted, reacted)
+    if not planned and _tells_of_nobody(read, beats):
+        raise ThemeError(f"it tells of nobody, and of hardly anything that a body does at home. {LANGUAGE}")
     return LongScript(
         theme=theme,
-        beats=_with_reasons(read, writer, acted),
+        beats=beats,
         short_scripts=tuple(Retrieved(script=part.script, beat=beat, score=part.score) for beat, part in writer.parts),
-        keyframes=acted if planned else as_hands_hold(acted),
+        keyframes=acted,
         repairs=(*record.notes, *repairs),
         person=planned.person if planned else None,
         method=request.method,
@@ -83,6 +94,15 @@ def serve_beats(
         encoder="" if request.method == "direct" else library.encoder.name,
         seed=request.seed,
     )
+
+
+def _tells_of_nobody(read: Sequence[ReadBeat], beats: Sequence[Beat]) -> bool:
+    """Whether words name nobody, and no verb that is no noun too is played, nor half of them: "Red, green, yellow"."""
+    if any(is_person(one.hero) or names_somebody(one.clause) for one in read):
+        return False
+    told = (one.clause.verb and not is_noun(one.text.split()[0].lower()) for one in read)
+    played = any(sure and not beat.why for sure, beat in zip(told, beats, strict=True))
+    return not played and 2 * sum(beat.seen for beat in beats) < len(beats)
 
 
 def _write(
@@ -137,9 +157,13 @@ def _named_part(served: PlannedBeat, library: ScriptLibrary) -> Part | None:
 
 
 def _with_reasons(
-    read: Sequence[ReadBeat], writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+    read: Sequence[ReadBeat],
+    writer: KeyframeWriter,
+    keyframes: Sequence[PlannedKeyframe],
+    reacted: Mapping[int, str],
 ) -> tuple[Beat, ...]:
-    """The beats as they are planned: those that no keyframe shows with the reason.
+    """The beats as they are planned: those that no keyframe shows with the reason; nobody is asked to do what is
+    `reacted` to.
 
     What a mood alone shows ("grins") is a feeling, and shown wherever something is done in that mood.
     """
@@ -147,21 +171,28 @@ def _with_reasons(
     moods = {keyframe.mood for keyframe in keyframes}
     beats = []
     for index, one in enumerate(read):
+        if index in reacted:
+            beats.append(one.beat.model_copy(update={"why": reacted[index]}))
+            continue
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
-        meant = with_its_noun(index, read)[0]
-        kind = "feeling" if index in writer.moody else meant.beat.kind
+        meant = with_its_noun(index, read)
+        kind = "feeling" if index in writer.moody else meant[0].beat.kind
         besides = _besides(index, meant, writer, keyframes) if known else ()
         beats.append(one.beat.model_copy(update={"why": why, "kind": kind, "unshown": besides}))
     return tuple(beats)
 
 
 def _besides(
-    index: int, read: ReadBeat, writer: KeyframeWriter, keyframes: Sequence[PlannedKeyframe]
+    index: int,
+    beats: tuple[ReadBeat, Sequence[ReadBeat]],
+    writer: KeyframeWriter,
+    keyframes: Sequence[PlannedKeyframe],
 ) -> tuple[str, ...]:
     """What an acted beat tells and no keyframe shows: all of it, where its keyframes only stand for it."""
+    read, every = beats
     if index in writer.moody:
-        seen = read.clause.verb not in EXPRESSIONS or read.beat.emotion in EXPRESSED
+        seen = read.clause.verb not in EXPRESSIONS or (read.clause.verb in FACES and read.beat.emotion in EXPRESSED)
         known = (read.sure or read.beat.kind == "feeling") and seen and not _does_more(read)
         known = known and not is_gainsaid(read.clause, [one for one in keyframes if one.mood is read.beat.emotion])
         return details_of(read.clause) if known else (read.text,)
@@ -178,8 +209,19 @@ def _besides(
         return ()
     by = BY_A_WALL.search(read.text) if all(one.skill in (Skill.SITDOWN, Skill.LIEDOWN) for one in own) else None
     besides = unseen(read.clause, (*_led_by(own, keyframes), *own))
+    if _is_of_a_pet(index, every):
+        besides = ("it", *besides)
     # Seats stand where they do.
     return (*besides, by[0]) if by and not any(by[0] in one for one in besides) else besides
+
+
+def _is_of_a_pet(index: int, beats: Sequence[ReadBeat]) -> bool:
+    """Whether "it" in a beat is an animal that was named last: "the cat jumps down, so she picks | it | up"."""
+    if "it" not in beats[index].clause.lemmas[1:]:
+        return False
+    words = (lemma_of(token.low) for one in reversed(beats[:index]) for token in reversed(tokens_of(one.text)))
+    named = next((word for word in words if word in things()), "")
+    return named in things_called("pet")
 
 
 def _led_by(own: Sequence[PlannedKeyframe], keyframes: Sequence[PlannedKeyframe]) -> Sequence[PlannedKeyframe]:

@@ -35,6 +35,7 @@ from planner_service.themes.opening_words import comes_in, opening_of
 from planner_service.themes.protagonist import head_of, is_name, is_person
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things_called
+from planner_service.themes.verb_finder import is_adverb
 from scene_graphs.data_tables import read_table
 from scene_graphs.furniture import categories_of, group_of
 
@@ -268,6 +269,12 @@ class DeedReader:
         if one.beat.kind == "deed" and one.clause.verb in _SMILES:  # seen in a face
             return replace(one, beat=one.beat.model_copy(update={"kind": "feeling"}), sure=True)
         told = deed_of(one.clause) if one.beat.kind in ("deed", "feeling") else None
+        if one.beat.kind == "feeling" and not (
+            one.clause.verb or one.clause.place or is_adverb(one.text)
+        ):  # "Frightened, …"
+            being = replace(one.clause, verb="be", lemmas=("be", *one.clause.lemmas), aside=False)
+            told = deed_of(being)
+            one = replace(one, clause=being) if told is not None and told.is_gesture else one
         if one.beat.kind == "feeling":
             does = told is not None and told.is_gesture and not (told.row.small or told.row.mood)  # "gets dressed"
             one = replace(one, beat=one.beat.model_copy(update={"kind": "deed"})) if does else one
@@ -277,7 +284,10 @@ class DeedReader:
         most = likely.captions[likely.best]
         if one.beat.kind == "other":
             first = one.beat.who.split(" ")[0]
-            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or _sounds(one) or is_state(one.clause):
+            not_yet = one.clause.aside and one.clause.joint == "before"
+            if first.lower() in _NOBODY | {"he", "she"} or is_name(first) or not_yet:
+                return one
+            if _sounds(one) or is_state(one.clause):
                 return one
             ours = min(most, likely.shown) > THEIRS[_whose(one)]  # "a cup of tea"
             words = one.clause.text if one.text == f"{one.beat.who} {one.clause.text}" else one.text

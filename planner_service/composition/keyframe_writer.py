@@ -161,6 +161,8 @@ class KeyframeWriter:
         elif deed is not None and (row := self._within(read)) is not None:
             self.body.show(index)
             self.deeds.update({index: replace(deed, row=row)} if row.stands else {})
+        elif deed is not None and self._is_felt_at_rest(read, deed):
+            self._feel(index, beats)
         elif deed is not None:
             if self.body.resting is None:
                 deed = on_seat_ahead(deed, read, nexts, self.reader, self.places)
@@ -172,6 +174,12 @@ class KeyframeWriter:
             self._feel(index, beats)
         else:
             self.why[index] = UNSHOWN
+
+    def _is_felt_at_rest(self, read: ReadBeat, deed: Deed) -> bool:
+        """Whether a beat says how somebody is who rests, and would have to get up to show it: "surprised"."""
+        ways = deed.row.lying if lies(self.body.resting) else deed.row.seated
+        felt = read.felt is not None and read.clause.verb in theme_words()["state_verbs"]
+        return bool(self.body.resting) and felt and deed.is_gesture and deed.skill is Skill.LOCO and not ways
 
     def _deed(self, index: int, beats: Sequence[ReadBeat]) -> Deed | None:
         """What a beat does; who starts again does what was tried last, else done at rest last, else done first, and who

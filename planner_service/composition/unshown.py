@@ -10,8 +10,9 @@ from motion_backend.motion import Skill
 from motion_backend.props import held_in
 from planner_service.composition.deed_lexicon import said_row
 from planner_service.composition.deed_table import deed_table
-from planner_service.composition.furniture_words import pieces_in
+from planner_service.composition.furniture_words import pieces_in, pieces_told
 from planner_service.composition.other_people import others_in
+from planner_service.scripts.acted_beats import connects
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.scripts.script_words import affords
 from planner_service.themes.clause import Clause
@@ -37,8 +38,23 @@ _NEAR: Final = re.compile(
     re.IGNORECASE,
 )
 """What a deed is told to be done beside."""
-_NOWHERE: Final = frozenset(("windowsill", "sill", "fireplace", "hearth", "fire", "fireside", "stairs", "balcony"))
+_NOWHERE: Final = frozenset(
+    ("windowsill", "sill", "fireplace", "hearth", "fire", "fireside", "stairs", "balcony", "bathtub", "tub", "bath",
+     "shower", "toilet", "cot", "crib", "cradle", "altar", "easel", "lectern", "workbench", "stepladder", "ladder")
+)  # fmt: skip
 """Places of a home that no home here has."""
+_POSED: Final = re.compile(
+    r"\bon (?:(?:his|her|their|my|one|both) (?:\w+ )?(?:knees?|legs?|foot|toes|elbows|back|stomach|belly|side|head)"
+    r"|all fours|hands and knees)\b",
+    re.IGNORECASE,
+)
+"""How a body is while it does something, if its caption says so too."""
+_POSES: Final = re.compile(r"kneel|tiptoe|prone|supine|l(?:ie|ying)|squat|crouch|yoga")
+_LED: Final = (
+    r"(?:\b(?:of|from|off|in|on|at|to|by|into|onto) )?"
+    r"(?:(?:the|an?|his|her|their|my|its|every|each|both) )?(?:[\w'-]+ )??"
+)
+"""Words before a name."""
 _ON: Final = frozenset(("on top of", "on", "onto", "upon"))
 _HIDDEN: Final = frozenset(("under", "underneath", "beneath", "behind", "in", "into", "inside", "through"))
 _UNDER: Final = frozenset(("under", "underneath", "beneath"))
@@ -72,6 +88,11 @@ _BARE: Final = re.compile(
     r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|dressing)\b"
 )
 """Captions in which nothing is in the hands; but a box."""
+_DOING: Final = re.compile(r"\w+ing\b")
+_AT_REST: Final = frozenset(
+    ("sitting", "lying", "leaning", "lean", "thinking", "resting", "supporting", "crossing", "bending")
+)
+"""What captions call somebody's doing who does nothing with the hands."""
 _SEEN_OFTEN: Final = re.compile(r"knock|jump|clap|nod|wav|kick|squat|swing|step|march|paci|rock|stir|knit|shak")
 """Of captions that do it several times."""
 
@@ -100,9 +121,12 @@ def unseen(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> tuple[str, .
         *others_in(clause, keyframes),
         *_things(clause, keyframes),
         *_places(clause, keyframes),
+        *_pieces(clause, keyframes),
+        *_poses(clause, keyframes),
         *_counts(clause, keyframes),
     )
-    return (*besides, *(text for text in dict.fromkeys(more) if not any(text in one for one in besides)))
+    words = [*besides, *dict.fromkeys(more)]
+    return tuple(text for text in words if not any(text != one and text in one for one in words))
 
 
 def _held_words(keyframes: Sequence[PlannedKeyframe]) -> frozenset[str]:
@@ -117,11 +141,11 @@ def _words(text: str) -> list[str]:
 def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     """What hands do it to, and with what, of things that are kept somewhere: a hand that is laid there has none of
     them but what its keyframe names, and what is carried is else a box."""
-    done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor] or list(keyframes)
+    done = [one for one in keyframes if not connects(one)] or list(keyframes)
     rows = [held_in(one.skill, one.caption, one.held) for one in done]
     worked = any(row is not None and row.of and row.lies_under for row in rows)
     tooled = any(row is not None and row.of for row in rows)
-    bare = bool(done) and not worked and (tooled or all(_BARE.search(one.caption) for one in done))
+    bare = bool(done) and not worked and (tooled or all(_BARE.search(one.caption) or _is_idle(one) for one in done))
     if clause.verb in theme_words()["sought_verbs"] or clause.quotes:
         return []
     told = [one for one in _OBJECT.finditer(clause.text.partition(" ")[2]) if bare or one["with"]]
@@ -134,6 +158,12 @@ def _things(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     if bare and plain and lemma_of(plain.lower()) not in named and _is_carried(plain):
         found.append(plain)
     return found[:1]
+
+
+def _is_idle(keyframe: PlannedKeyframe) -> bool:
+    """Whether somebody only sits or lies there."""
+    rests = keyframe.skill in (Skill.SITDOWN, Skill.LIEDOWN)
+    return rests and not keyframe.held and _AT_REST.issuperset(_DOING.findall(keyframe.caption.lower()))
 
 
 def _is_carried(what: str) -> bool:
@@ -150,12 +180,31 @@ def _places(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     for place in _PLACE.finditer(clause.text):
         how, what = place["how"].lower(), place["what"]
         beside_verb = clause.text[: place.start()].strip() == first
-        if beside_verb and how not in _UNDER and clause.verb in theme_words()["particle_verbs"]:
+        worn = how == "on" and lemma_of(_words(what)[-1]) in things_called("clothes")  # "ties | on an apron"
+        if beside_verb and how not in _UNDER and (worn or clause.verb in theme_words()["particle_verbs"]):
             continue
         if _is_place(what) and not any(_is_at(one, how, what) for one in keyframes):
             found.append(place[0])
     beside = [place for place in _NEAR.finditer(clause.text) if not _is_near(clause, place["what"], keyframes)]
     return [*found, *(place[0] for place in beside)]
+
+
+def _pieces(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
+    """Furniture, and places that no home has, of which no keyframe is at any: "pulls the sheets off | the piano"."""
+    told = clause.text.partition(" ")[2]
+    names = [name for name, _ in pieces_told(told) if not name.startswith("drawer")]
+    names += [word for word in _words(told) if lemma_of(word) in _NOWHERE and word not in names]
+    if any(opening_of(one.skill, clause.text) for one in keyframes):
+        return []
+    far = [re.escape(name) for name in names if not any(_is_at(one, "at", name) for one in keyframes)]
+    found = (re.search(rf"{_LED}\b{name}\b", told, re.IGNORECASE) for name in far)
+    return [one[0] for one in found if one]
+
+
+def _poses(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
+    """How the body is told to be, where no caption says so: "scrubs it | on his knees"."""
+    seen = any(_POSES.search(one.caption.lower()) or one.skill is Skill.LIEDOWN for one in keyframes)
+    return [] if seen else [one[0] for one in _POSED.finditer(clause.text)]
 
 
 def _is_near(clause: Clause, what: str, keyframes: Sequence[PlannedKeyframe]) -> bool:
@@ -198,7 +247,7 @@ def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
 
 def _counts(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     """How often, and to how many, of what is done once."""
-    done = [one for one in keyframes if one.skill is not Skill.LOCO or one.on_floor] or list(keyframes)
+    done = [one for one in keyframes if not connects(one)] or list(keyframes)
     if len(done) > 1 or any(_SEEN_OFTEN.search(one.caption) for one in done):
         return []
     counted = [one[0] for one in _OFTEN.finditer(clause.text)]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
 from typing import Final, Literal
 
 from motion_backend.motion import Does, Skill
@@ -10,6 +11,7 @@ from planner_service.composition.furniture_words import pieces_in
 from planner_service.scripts.script import PlannedKeyframe
 from planner_service.themes.beats import ReadBeat
 from planner_service.themes.clause import Clause
+from planner_service.themes.opening_words import opening_of, spelt_out
 from planner_service.themes.theme_words import theme_words
 from scene_graphs.furniture import canonical, categories_of, class_of, typical_size
 from scene_graphs.furniture_shapes import parts
@@ -22,6 +24,13 @@ _OPEN: Final = frozenset(("open", "ajar"))
 _APART: Final = frozenset(("open", "back", "apart", "aside"))
 _SHUT: Final = frozenset(("shut", "closed"))
 _SWITCHED: Final = frozenset(("on", "off"))
+_OPEN_ONE: Final = re.compile(
+    r"\b(?:at|before|by|beside|from|in|into|of|out of) (?:the|a|an|his|her|their|my) open(?:ed)? "
+    r"(?P<what>fridge|refrigerator|freezer|cupboard|wardrobe|closet|cabinet|drawer)\b",
+    re.IGNORECASE,
+)
+"""What stands open where something is done."""
+_OPENS: Final = "touch medium height with the right hand"
 _DRAWERS: Final = "dresser"
 """Where drawers are, where nobody says."""
 _STORES: Final = frozenset(("closet", "appliance"))
@@ -36,14 +45,32 @@ def with_worked(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) 
         for beat in (keyframe.beat, *keyframe.also):
             if does or beat is None or beat in told or keyframe.skill is not Skill.TOUCH or keyframe.on_floor:
                 continue
-            does = done_to(read[beat].clause, keyframe.piece[0], last)
+            said = spelt_out(read[beat].text, [one.text for one in read[:beat]])
+            at_door = opening_of(Skill.TOUCH, said) is not None
+            does = done_to(read[beat].clause, keyframe.piece[0], last or ("open" if at_door else ""))
             told |= {beat} if does else set()
             drawer = does in ("open", "into") and "drawer" in read[beat].clause.lemmas
             if drawer and not _has_drawers(keyframe.piece[0]):
                 _move(found, number, next(filter(_has_drawers, pieces_in(read[beat].text)), _DRAWERS))
         last = does or last
         found[number] = found[number].model_copy(update={"does": does}) if does else found[number]
-    return tuple(found)
+    return tuple(_opened_first(read, found))
+
+
+def _opened_first(read: Sequence[ReadBeat], keyframes: Sequence[PlannedKeyframe]) -> Iterator[PlannedKeyframe]:
+    """The same, with a hand that opens it before what is told to be done "at the open fridge", unless it is open."""
+    is_open, worked = set[str](), {one.beat for one in keyframes if one.does}
+    for keyframe in keyframes:
+        piece = keyframe.piece[0]
+        told = "" if keyframe.beat is None else read[keyframe.beat].text
+        meant = [match["what"] for match in _OPEN_ONE.finditer(told)]
+        at_it = any(canonical(piece) in categories_of(what) for what in meant)
+        if at_it and not keyframe.on_floor and keyframe.beat not in worked and piece not in is_open:
+            yield keyframe.model_copy(update={"skill": Skill.TOUCH, "caption": _OPENS, "does": "open", "held": ""})
+            is_open.add(piece)
+        is_open = (is_open | {piece}) if keyframe.does == "open" else is_open
+        is_open = (is_open - {piece}) if keyframe.does == "close" else is_open
+        yield keyframe
 
 
 def _has_drawers(piece: str) -> bool:

@@ -106,13 +106,15 @@ class Furnished:
     def explain(self) -> list[str]:
         """One line a room: which, what stands for what, what is missing, what was moved."""
         lines = []
+        used = [{display_name(one.piece[0]) for at, (one, place) in enumerate(self._placed())
+                 if place.room == number and not self._opening(at)} for number in range(len(self.matches))]  # fmt: skip
         for number, match in enumerate(self.matches):
             line = f"{match.room_type.replace('_', ' ')}: {match.layout_id}"
             asked = {keyframe.room for keyframe, place in self._placed() if place.room == number and keyframe.room}
             if others := sorted(asked - {match.room_type}):
                 line += f", where the script asks for a {' and a '.join(others).replace('_', ' ')}"
             line += "" if match.exact else " (another may fit better)"
-            given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions]
+            given = [f"{asked} → {got} ({level})" for asked, got, level in match.substitutions if asked in used[number]]
             given += [f"{asked} → {got} (one of its kind)" for asked, got in self._kinds(number)]
             pulls = [f"{self._name(number, pull)} pulled out by {pull.distance:.2f} m" for pull in match.pulls]
             pulls += [f"{self._name(number, move)} drawn up to its table" for move in match.drawn_up]

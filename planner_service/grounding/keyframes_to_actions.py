@@ -1,23 +1,21 @@
 """Keyframes to actions: surfaces to sit, lie and touch, standing points, hands and ways to walk (SIMS 3.4, LINGO C).
 
 Every contact gets the reachable spot nearest to where the body comes from; a walk ends where the next contact begins.
-
-Where walks go that lead to nothing: some way off, to the front left or right, or nowhere at all.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from math import cos, sin
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
 
-from motion_backend.motion import RISINGS, Action, Emotion, Posture, Skill, moment
+from motion_backend.motion import RISINGS, Action, Does, Emotion, Handle, Posture, Reaction, Skill, moment
 from motion_backend.procedural.lie.lie_pose import place_to_lie
+from motion_backend.procedural.lie.lie_styles import lie_style
 from motion_backend.procedural.sit.sit_skill import seat_for
 from motion_backend.procedural.touch.hand_captions import handling_of
 from motion_backend.procedural.touch.hand_contacts import suits, to_knock_on
@@ -25,13 +23,15 @@ from motion_backend.procedural.walk.walk_styles import walk_style
 from motion_backend.scene import scene_of
 from motion_backend.state_machine import ENDS, alongside
 from planner_service.grounding.dwell_time import lingering
+from planner_service.grounding.handle_places import OpenFronts
 from planner_service.grounding.opening_places import LACKS, OpeningPlace, entry, opening_place
 from planner_service.grounding.running_places import LONG_ENOUGH, runs, way_to_run
 from planner_service.grounding.seat_tables import done_at_tables
 from planner_service.grounding.touch_stance import LEG_ROOM, ElbowRoom
+from planner_service.grounding.walk_direction import in_front
 from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
-from planner_service.scripts.script import Keyframe
+from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
 from planner_service.themes.opening_words import Kind, comes_in, goes_out, goes_to_window, opening_of
 from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
@@ -42,13 +42,6 @@ from scene_graphs.layout import Placed
 from scene_graphs.navigation.path_planner import Walkable
 
 Point = tuple[float, float]
-_FRONT: Final = re.compile(r"\b(?:front|forward|ahead)[ ,a-z]*?\b(left|right)\b", re.IGNORECASE)
-_TO_THE_SIDE: Final = np.radians([40.0, 50.0, 30.0, 60.0, 70.0])
-"""How far to the side of where the body looks its front left is, the best first."""
-_AWAY: Final = (1.8, 1.5, 1.2, 0.9, 0.7)
-"""How far a walk to the front goes, the best first (metres)."""
-_ROOM: Final = 0.25
-"""Clearance where it should end (metres)."""
 FREE_FLOOR: Final = 0.35
 """Clearance all along a body on the floor at which one stops looking for a better place (metres)."""
 FLOOR_TRIES: Final = 120
@@ -66,48 +59,16 @@ def stays(caption: str) -> float:
     return walk_style(Emotion.NEUTRAL, caption).stays
 
 
-def heading_after(done: Sequence[tuple[Action, Point | None]], walkable: Walkable) -> float | None:
-    """Where a body looks after actions, each with where it began (yaw); None where nobody can know."""
-    for action, at in reversed(done):
-        if action.spot is not None:
-            return action.spot.approach if action.spot.affordance == "lie" else action.spot.facing
-        if action.facing is not None:
-            return action.facing
-        if action.goal is not None:
-            return _last_step(at, action.goal, walkable)
-    return None
-
-
-def _last_step(at: Point | None, goal: Point, walkable: Walkable) -> float | None:
-    """The direction in which a walk arrives."""
-    if at is None or not walkable.reachable(at, goal):
-        return None
-    step = np.diff(walkable.path(at, goal)[-2:], axis=0).sum(axis=0)
-    return float(np.arctan2(step[0], step[1])) if np.hypot(*step) > 1e-6 else None
-
-
-def in_front(
-    caption: str, walkable: Walkable, at: Point | None, done: Sequence[tuple[Action, Point | None]]
-) -> Point | None:
-    """The goal of "walk to the front left" from where the body stands and looks; None where there is no such place."""
-    side = _FRONT.search(caption)
-    heading = heading_after(done, walkable) if side else None
-    if side is None or at is None or heading is None:
-        return None
-    sign = 1.0 if side[1].lower() == "left" else -1.0
-    for least in (_ROOM, 0.0):
-        for away in _AWAY:
-            for aside in _TO_THE_SIDE:
-                yaw = heading + sign * aside
-                goal = (float(at[0] + away * np.sin(yaw)), float(at[1] + away * np.cos(yaw)))
-                if walkable.is_free(goal) and walkable.sees(at, goal) and walkable.clearance(goal) >= least:
-                    return goal
-    return None
+def held(skill: Skill, caption: str) -> float:
+    """For how many seconds what is done at a piece goes on, or lying on it."""
+    return max(HOLDS[skill], lie_style(Emotion.NEUTRAL, caption).stays if skill is Skill.LIEDOWN else 0.0)
 
 
 NEEDS = {Skill.SITDOWN: "sit", Skill.LIEDOWN: "lie", Skill.TOUCH: "touch"}
 HOLDS = {Skill.SITDOWN: 2.5, Skill.LIEDOWN: 3.0, Skill.TOUCH: 1.4}
 """Seconds a reached pose is held."""
+RESTS_BEFORE = 1.0
+"""Seconds of rest before what a story begins with happens."""
 LAST_HOLD = 1.5
 """Seconds more for the last keyframe."""
 STANDS_ON_FLOOR = 0.3
@@ -167,6 +128,9 @@ def act(
     stage = _Stage(home, scene.walkable, np.random.default_rng([seed, 7]), words, scale)
     known = kept or [None] * len(keyframes)
     drafts: list[Action] = []
+    entered = entry(home, scene.walkable, places[0].room) if said and comes_in(said[0]) else None
+    stage.entered = entered
+    door = stage.fronts.entered(entered.standing) if entered is not None else None
     busy = done_at_tables(keyframes)
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         words_of_it = f"{keyframe.caption}; {said[index] if said else ''}"
@@ -180,16 +144,21 @@ def act(
         else:  # who rises does so from what it rests on now
             drafts.append(stage.contact(index, keyframe, place, free_hand(before)))
     aimed = [old is not None and not old.leads_elsewhere for old in known]
-    entered = entry(home, scene.walkable, places[0].room) if said and comes_in(said[0]) else None
-    drafts[:1] = [replace(one, begins=entered) for one in drafts[:1] if not one.already] or drafts[:1]
-    begins = entered[:2] if entered is not None else scene.beginning(seed)[0]
+    begins = entered.standing if entered is not None else scene.beginning(seed)[0]
+    walked = stage.walks(drafts, places, begins, aimed)
+    walked[:1] = [stage.comes_in(one, entered, door) for one in walked[:1]]
     hands = Hands()
-    acted = [
-        hands.follow(one, done_in(keyframes[one.keyframe].caption))
-        for one in stage.walks(drafts, places, begins, aimed)
-    ]
+    acted = [hands.follow(one, done_in(keyframes[one.keyframe].caption)) for one in walked]
     named = [replace(one, holds=keyframes[one.keyframe].held or one.holds) for one in acted]
+    named = [_reacting(one, keyframes[one.keyframe]) for one in named]
     return tuple(lingering(one, said[one.keyframe] if said else "") for one in named)
+
+
+def _reacting(action: Action, keyframe: Keyframe) -> Action:
+    """An action with what happens before it or after it: who only rests there at first does not for long."""
+    rows = keyframe.reacts if isinstance(keyframe, PlannedKeyframe) else ()
+    hold = RESTS_BEFORE if rows and action.already else action.hold
+    return replace(action, hold=hold, reacts=tuple(Reaction(row.how, row.at, row.after) for row in rows))
 
 
 class _Stage:
@@ -211,6 +180,8 @@ class _Stage:
         """Keyframes whose words lead to a window."""
         self.out: set[int] = set()
         """Keyframes in which somebody leaves the home."""
+        self.entered: OpeningPlace | None = None
+        """The door by which somebody comes in."""
         self.seated_for: list[str] = []
         """The caption that a seat is chosen for: what needs a table, of all that is done on it."""
         self.elsewhere: set[int] = set()
@@ -228,22 +199,36 @@ class _Stage:
             if opening is not None:
                 knocked = handling_of(keyframe.caption) == "knock"
                 spot = opening.spot(height_of(keyframe.caption), self.scale, knocked)
-            elif keyframe.skill is Skill.TOUCH and (kind := self._asked(index)) is not None:
-                action = replace(action, lacks=LACKS[kind])
             if keyframe.skill is Skill.TOUCH:
                 hand, spot = self._elbows.freely(spot, hand, keyframe.caption)
+                action = self._touched(index, replace(action, spot=spot, hand=hand), keyframe, place)
+                spot, hand = action.spot or spot, action.hand
                 self.elsewhere |= {index} if spot.object_id != place.object_id else set()
             else:
                 self.resting = spot
             self.on = None if keyframe.skill is Skill.TOUCH else spot
             self.at, self.walks_on = spot.standing, False
-            hold, already = HOLDS[keyframe.skill], getattr(keyframe, "already", False)
+            hold, already = held(keyframe.skill, keyframe.caption), getattr(keyframe, "already", False)
             return replace(action, object_id=spot.object_id, spot=spot, hand=hand, hold=hold, already=already)
         self.on = None
         self.walks_on |= keyframe.skill is Skill.LOCO
         if keyframe.skill in RISINGS and self.resting is not None:
             return replace(action, object_id=self.resting.object_id, spot=self.resting)
         return action
+
+    def _touched(self, index: int, action: Action, keyframe: Keyframe, place: Place) -> Action:
+        """A hand at what it opens or shuts, if it does; at a door also where it is got to from aside alone."""
+        does: Literal[Does, ""] = getattr(keyframe, "does", "")
+        kind = self._asked(index)
+        assert action.spot is not None
+        if kind is None or action.spot.object_id == kind:
+            return self.fronts.touched(action, does, keyframe.piece[0])
+        far = opening_place(self.home, self.walkable, kind, place.room, self.at)
+        if far is not None and kind == "door" and does:
+            there = self.fronts.touched(replace(action, spot=far.spot("medium", self.scale)), does, "door")
+            if there.handle is not None:
+                return there
+        return replace(action, lacks=LACKS[kind])
 
     def _asked(self, index: int) -> Kind | None:
         return self.openings[index] if index < len(self.openings) else None
@@ -259,9 +244,17 @@ class _Stage:
         self.on = action.spot if action.skill in (Skill.SITDOWN, Skill.LIEDOWN) else None
         self.resting = self.on or self.resting
         self.at = action.spot.standing if action.spot is not None else self.at
+        self.fronts.kept(action)
         self.walks_on = action.skill is Skill.LOCO or (self.walks_on and action.spot is None)
         hold = stays(action.caption) if action.skill is Skill.LOCO else 0.0
         return replace(action, keyframe=index, hold=HOLDS.get(action.skill, hold or Action.hold))
+
+    def comes_in(self, action: Action, entered: OpeningPlace | None, door: Handle | None) -> Action:
+        """The first action of who comes in by a door: they walk in by it, or stand before it already."""
+        if entered is None or action.already:
+            return action
+        outside = entered.outside(self.walkable) if action.goal is not None else None
+        return replace(action, begins=(*(outside or entered.standing), entered.inward), handle=door)
 
     def _spot(self, index: int, keyframe: Keyframe, mood: Emotion, place: Place) -> Spot:
         need = NEEDS[keyframe.skill]
@@ -351,6 +344,11 @@ class _Stage:
         return _between(spot.standing, self.at) < A_STEP
 
     @cached_property
+    def fronts(self) -> OpenFronts:
+        """What stands open."""
+        return OpenFronts(self.home, self.walkable, scene_of(self.home).obstacles.solid(), self.scale)
+
+    @cached_property
     def _elbows(self) -> ElbowRoom:
         return ElbowRoom(self.walkable, scene_of(self.home).obstacles.solid())
 
@@ -435,6 +433,8 @@ class _Stage:
     ) -> Action:
         """A walk with its goal; who stands still or waves has none."""
         wanders, at = place.object_id is None, leg.at
+        if action.keyframe == 0 and self.entered is not None and "door" in self.openings[1:3]:
+            return replace(action, goal=self.entered.standing, facing=None)  # to shut it
         kind = self.openings[action.keyframe] if wanders else None
         if kind is not None and (kind == "door" or stays(action.caption) or action.keyframe in self.to_window):
             return self._before(kind, action, place, at)
@@ -463,8 +463,10 @@ class _Stage:
         found = opening_place(self.home, self.walkable, kind, place.room, at)
         if found is None:
             return replace(action, lacks=LACKS[kind])
-        if kind == "door" and action.keyframe in self.out and self.walkable.reachable(found.standing, found.outside):
-            return replace(action, goal=found.outside, facing=found.facing)
+        outside = found.outside(self.walkable) if kind == "door" and action.keyframe in self.out else None
+        if outside is not None:
+            action = self.fronts.passed(action, found.spot("medium", self.scale))
+            return replace(action, goal=outside, facing=found.facing)
         stands = max(seconds, LOOKS_OUT) if (seconds := stays(action.caption)) else 0.0
         return replace(action, goal=found.standing, facing=found.facing, stands=stands)
 
@@ -583,7 +585,10 @@ def height_of(caption: str) -> str:
 def action_to_dict(action: Action) -> dict[str, Any]:
     """Plain values of an action for story.json."""
     plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    for name in ("lacks", "begins", "by"):
+    plain["reacts"] = [vars(one) for one in action.reacts]
+    for name in ("lacks", "begins", "by", "handle", "reacts"):
         if not plain[name]:
             del plain[name]
+    if action.handle is not None:
+        plain["handle"] = asdict(action.handle)
     return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}

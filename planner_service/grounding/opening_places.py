@@ -19,8 +19,8 @@ from scene_graphs.affordances.affordances import Spot
 from scene_graphs.boxes import Part
 from scene_graphs.home import HANDLE_HEIGHT, SILL, Home, Wall
 from scene_graphs.layout import Opening, Placed, wrap
-from scene_graphs.meshes.interior_mesh import CURTAIN_ABOVE, CURTAIN_BELOW, CURTAIN_OUT, LEAF_OUT
-from scene_graphs.meshes.moving_parts import CURTAINS, ROOM_DOOR
+from scene_graphs.meshes.interior_mesh import CURTAIN_ABOVE, CURTAIN_BELOW, CURTAIN_OUT, LEAF_OUT, THICKNESS
+from scene_graphs.meshes.moving_parts import CURTAINS, HALL_HEIGHT, ROOM_DOOR
 from scene_graphs.navigation.path_planner import Walkable
 
 Point = tuple[float, float]
@@ -34,8 +34,8 @@ _HANDLE: Final = 0.04
 _ENTERED: Final = (0.7, 0.9, 0.55, 1.2)
 """How far before the door one stands who has just come in (metres)."""
 _TO_LOOK: Final = (0.45, 0.6, 0.8, 1.0, 1.25, 1.5, 1.8, 2.1)
-_PASSED: Final = 0.3
-"""How far outside of the door one is who has just gone out by it (metres)."""
+_PASSED: Final = (0.95, 0.3)
+"""How far outside of the door one is who has gone out by it, the best first (metres)."""
 _TO_REACH: Final = (0.45, 0.5, 0.55, 0.6)
 """How far from the wall one stands, the best first (metres)."""
 _ALONG: Final = (0.0, -0.25, 0.25)
@@ -58,11 +58,14 @@ class OpeningPlace:
     """[x, z] of what is straight ahead: the wall, or the handle of the door."""
     opening: Opening
 
-    @property
-    def outside(self) -> Point:
-        """[x, z] of who has just gone out by it."""
+    def outside(self, walkable: Walkable) -> Point | None:
+        """[x, z] of who has gone out by it; None where there is no way."""
         x, z = np.mean(np.asarray(self.opening.segment), axis=0)
-        return float(x + _PASSED * np.sin(self.facing)), float(z + _PASSED * np.cos(self.facing))
+        for away in _PASSED:
+            place = float(x + away * np.sin(self.facing)), float(z + away * np.cos(self.facing))
+            if walkable.reachable(self.standing, place):
+                return place
+        return None
 
     @property
     def inward(self) -> float:
@@ -102,10 +105,10 @@ def opening_place(
     return best[1] if best is not None else None
 
 
-def entry(home: Home, walkable: Walkable, room: int) -> tuple[float, float, float] | None:
-    """Where somebody stands and looks, [x, z, yaw], who has just come into a room by its outer door, else into any."""
+def entry(home: Home, walkable: Walkable, room: int) -> OpeningPlace | None:
+    """Where somebody stands who has just come into a room by its outer door, else into any."""
     found = min(_places(home, walkable, "door", room, _ENTERED), key=lambda one: one[:2], default=None)
-    return (*found[2].standing, found[2].inward) if found is not None else None
+    return found[2] if found is not None else None
 
 
 def opening_piece(home: Home, is_door: bool, at: Point) -> Placed | None:
@@ -120,7 +123,8 @@ def opening_piece(home: Home, is_door: bool, at: Point) -> Placed | None:
         return None
     wall, side, opening = min(found, key=lambda one: float(np.hypot(*np.subtract(np.mean(one[2].segment, axis=0), at))))
     (x, z), width = np.mean(opening.segment, axis=0), float(np.hypot(*np.subtract(*opening.segment)))
-    yaw, name = float(np.arctan2(-side.outward[0], -side.outward[1])), f"{side.room}/{home.walls.index(wall)}"
+    yaw = float(np.arctan2(-side.outward[0], -side.outward[1]))
+    name = f"{side.room}/{home.walls.index(wall)}.{wall.openings.index(opening)}"
     tall = min(opening.top, wall.height - 0.02)
     if not is_door:
         low, top = opening.bottom - CURTAIN_BELOW, tall + CURTAIN_ABOVE
@@ -131,7 +135,9 @@ def opening_piece(home: Home, is_door: bool, at: Point) -> Placed | None:
     leaf = Part("panel", (-width / 2, 0.005, -LEAF_OUT[1]), (width / 2, tall, -LEAF_OUT[0]))
     begin, end = (grip - 0.065, HANDLE_HEIGHT - 0.015), (grip + 0.065, HANDLE_HEIGHT + 0.015)
     handle = Part("pole", (*begin, -LEAF_OUT[0]), (*end, _HANDLE + 0.005))
-    return replace(door, shape=(leaf, handle))
+    _, deep, aside = home.hall(opening)
+    hall = Part("panel", (-width / 2 - aside, 0.0, -deep), (width / 2 + aside, HALL_HEIGHT, -THICKNESS))
+    return replace(door, size=(width + 2 * aside, HALL_HEIGHT, 2 * deep), shape=(leaf, handle, hall))
 
 
 def _places(

@@ -203,6 +203,7 @@ class _Reader:
             already=old.already if old else False,
             held=_held(one, old),
             does=_does(one, old),
+            reacts=old.reacts if old else (),
         )
 
     def _note(self, number: int, field: str, said: str) -> None:

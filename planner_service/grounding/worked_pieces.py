@@ -47,7 +47,7 @@ def worked_pieces(actions: Sequence[Action], script: LongScript, home: Home) -> 
         piece = _piece(home, action.spot, keyframe.piece[0], does, before)
         if piece is not None:
             hand: Literal["left", "right"] = "left" if action.hand == "left" else "right"
-            found[action.keyframe] = Worked(does, piece, action.spot.point, hand)
+            found[action.keyframe] = Worked(does, piece, action.spot.point, hand, action.handle)
     return found
 
 
@@ -59,7 +59,10 @@ def _passed(action: Action, said: str, home: Home) -> Worked | None:
         return None
     door = opening_piece(home, True, place)
     does: Does = "close" if action.begins else "open"
-    return Worked(does, door, (place[0], HANGING, place[1])) if door is not None else None
+    if door is None:
+        return None
+    at = (place[0], HANGING, place[1]) if action.begins or action.spot is None else action.spot.point
+    return Worked(does, door, at, "left" if action.hand == "left" else "right", action.handle)
 
 
 def _does(keyframe: PlannedKeyframe) -> Does | None:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, fields
 
-from motion_backend.motion import Action, Emotion, Skill
+from motion_backend.motion import Action, Emotion, Handle, Reaction, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
 from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
@@ -64,7 +64,9 @@ def action_from_dict(row: Json) -> Action:
     known = {field.name for field in fields(Action)}
     told = {name: value for name, value in row.items() if name in known}
     plain: Json = {name: tuple(value) if isinstance(value, list) else value for name, value in told.items()}
-    return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"]), "spot": spot})
+    plain["reacts"] = tuple(Reaction(**one) for one in row.get("reacts", ()))
+    plain |= {"handle": Handle.from_dict(row.get("handle")), "spot": spot}
+    return Action(**plain | {"skill": Skill(row["skill"]), "emotion": Emotion(row["emotion"])})
 
 
 __all__ = [

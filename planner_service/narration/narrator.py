@@ -15,7 +15,7 @@ from dataclasses import replace
 from itertools import groupby, pairwise
 from typing import Final
 
-from motion_backend.motion import Character, Skill
+from motion_backend.motion import Character, Emotion, Skill
 from planner_service.narration.beat_stretches import SUBJECTS, Retelling, Stretch
 from planner_service.narration.keyframe_phrases import RESTS, Places, Variety, Wording
 from planner_service.narration.keyframe_sentences import sentences
@@ -25,7 +25,8 @@ from planner_service.narration.story_words import headline, title_of
 from planner_service.narration.tense import form_of
 from planner_service.narration.told import Told, Words, page
 from planner_service.scripts.acted_beats import connects, planned_beats
-from planner_service.scripts.script import LongScript, PlannedKeyframe
+from planner_service.scripts.script import WISHED, LongScript, PlannedKeyframe
+from planner_service.scripts.still_things import still_words
 from planner_service.themes.protagonist import hero_of
 from planner_service.themes.sentence_parser import clauses_of_text
 from planner_service.themes.theme_words import theme_words
@@ -75,9 +76,10 @@ def _title_of(script: LongScript, wording: Wording) -> str:
 
 
 def _mood_of(script: LongScript) -> str:
-    """The mood of most that happens now; that of the end, of two as frequent."""
+    """The mood of most of what happens now, and of more than one beat where there are several."""
     now = [beat.emotion for beat in reversed(script.beats) if beat.seen]
-    return max(now, key=now.count).value if now else "neutral"
+    most = max(now, key=now.count, default=Emotion.NEUTRAL)
+    return most.value if 2 * now.count(most) > len(now) > 1 or len(now) == 1 else Emotion.NEUTRAL.value
 
 
 def _thing_in(script: LongScript) -> str:
@@ -206,12 +208,13 @@ class _Teller:
         found = {at for run in self.told.asides() for at in run}
         for stretch in self.told.stretches:
             beat = self.script.beats[stretch.beat]
-            if stretch.beat in self.anew:
-                continue
-            if not (beat.seen and outcomes[stretch.beat].acted):
+            outcome = outcomes[stretch.beat]
+            if stretch.beat in self.anew or (beat.kind == "undone" and outcome.why != WISHED):
+                continue  # what is not done is seen not to be
+            if not (beat.seen and outcome.acted):
                 found |= {*range(stretch.start, stretch.end)}
                 continue
-            for detail in beat.unshown:
+            for detail in (*beat.unshown, *filter(None, (still_words(beat.text, outcome.seen),))):
                 found |= {*(self.told.part(stretch, detail) or self.told.lead(stretch, detail))}
         return found
 

@@ -57,6 +57,8 @@ def _deed(motion: Motion, keyframe: int, segment: tuple[int, int], role: Role, t
     skill, caption = role.captions.get(keyframe, (None, ""))
     ways = OWN.get(skill, WAYS) if skill is not None else WAYS
     phases = [phase for phase in motion.phases if phase.start < stop and phase.stop > start]
+    if phases and phases[0].reacts:  # what is told first is what happens
+        return start
     arrives = next((phase.stop for phase in reversed(phases) if phase.kind in ways), start)
     own = [frame for frame in taken if start <= frame < stop - TAKEN_FOR * motion.fps]
     if skill is Skill.LOCO and stays(caption) and not own:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, Skill
-from motion_backend.props import held_in
+from motion_backend.props import held_in, replaced
 from motion_backend.rendering.camera import Shot, choose_camera, choose_frames
 from motion_backend.rendering.motion_figures import Acting, Prop, around, home_props
 from motion_backend.rendering.rasterizer import Camera
@@ -98,7 +98,8 @@ def storyboard(
 ) -> Path:
     """Draw all keyframes a motion serves and save the picture as a PNG; `targets` are ids of the objects they use,
     `left_out` the frames that are in no picture of its film."""
-    stage = _Stage(home, motion, motion.joint_positions(), home_props(home), Acting.of(motion, role), role)
+    props = home_props(home, replaced(role))
+    stage = _Stage(home, motion, motion.joint_positions(), props, Acting.of(motion, role), role)
     served = np.unique(motion.actions).tolist()
     panels = [_panel(stage, i, keyframes[i], targets[i] if targets else None, left_out) for i in served]
     windows = sorted({panel.window for panel in panels})

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 from motion_backend.motion import RISINGS, Does, Emotion, Skill
-from planner_service.scripts.script import Beat, Keyframe, LongScript, PlannedKeyframe
+from planner_service.scripts.script import REACTED, WISHED, Beat, Keyframe, LongScript, PlannedKeyframe
 from planner_service.scripts.script_words import is_floor
 from planner_service.scripts.still_things import still_in
 from scene_graphs.json_fields import Json
@@ -24,6 +24,8 @@ STANDS: Final = f"something stands for it: {IN_ITS_PLACE}"
 NOT_SHOWN: Final = "not shown: words that the body does not show"
 LEFT_UNDONE: Final = "left undone: the theme says it is not done"
 """What is meant by the words of `ActedBeats.lines`."""
+FELT: Final = 1.5
+"""Seconds that a mood must be on the screen to be seen."""
 RESTS: Final = re.compile(
     r"(?:(?:takes?|took|has|have|had) )?an? (?:\w+ )?(?:nap|sleep|doze|snooze|siesta|lie-down|rest)\b"
     r"|(?:\w+ly )?(?:sits?|sat|lies|lie|lay|settles?|sinks?|flops?|drops?|slumps?|curls?|perch(?:es)?|collapses?|rests?"
@@ -36,6 +38,8 @@ RESTS: Final = re.compile(
 OF_LIMBS: Final = re.compile(r"\b(?:hands?|arms?|knees?|foot|feet)\b")
 """Words of a note (`Motion.notes`) on nothing but arms and legs."""
 _OF_HANDS: Final = re.compile(r"\b(?:hands?|arms?)\b")
+_OPEN_ARMS: Final = "open arms"
+"""Of a note on how somebody walks."""
 _TELLS_LEGS: Final = re.compile(
     r"\b(?:legs?|knees?|foot|feet|stretch\w*|kneel\w*|knelt|sit-ups?|push-ups?|exercis\w*|yoga)\b"
 )
@@ -135,12 +139,17 @@ class ActedBeats:
     @property
     def undone(self) -> tuple[Outcome, ...]:
         """Those that are left undone, as asked."""
-        return tuple(one for one in self.outcomes if one.beat.kind == "undone")
+        return tuple(one for one in self.outcomes if one.beat.kind == "undone" and one.why != WISHED)
 
     @property
     def told(self) -> tuple[Outcome, ...]:
-        """Those that are no deeds, or are only spoken of: nobody is asked to do them."""
-        return tuple(one for one in self.outcomes if not one.beat.asked and one.beat.kind != "undone")
+        """Those that are no deeds, or are only spoken of or wished for: nobody is asked to do them."""
+        return tuple(one for one in self.outcomes if not one.beat.asked and one not in self.undone)
+
+    @property
+    def reacted(self) -> tuple[Outcome, ...]:
+        """Those that happen, and that the body is seen to react to: nobody does them."""
+        return tuple(one for one in self.told if one.why.startswith(REACTED))
 
     def lines(self) -> list[str]:
         """In words: how many are acted, the missing ones and why, what is left undone, and what these words mean where
@@ -165,7 +174,12 @@ class ActedBeats:
                 for one in self.outcomes
                 if one.acted and one.unshown
             ),
-            *(f"told, not acted: {one.beat.text} ({one.why})" for one in self.told if one.why and not one.stood_for),
+            *(f"reacted to: {one.beat.text} ({one.why.removeprefix(REACTED + ': ')})" for one in self.reacted),
+            *(
+                f"told, not acted: {one.beat.text} ({one.why})"
+                for one in self.told
+                if one.why and not one.stood_for and one not in self.reacted
+            ),
             *(f"left undone, as asked: {one.beat.text}" for one in self.undone),
             *([] if plain else self._meanings()),
         ]
@@ -246,9 +260,25 @@ def _concerns(words: str, beat: Beat) -> bool:
     piece that something is done in place of must be named; a mood is seen however the arms are."""
     if IN_PLACE_OF in words:
         return re.search(rf"\b{re.escape(words.partition(IN_PLACE_OF)[2])}", beat.text, re.IGNORECASE) is not None
+    if _OPEN_ARMS in words:
+        return "arms" in beat.text  # who "walks out of the door" does so with arms before them too
     if OF_LIMBS.search(words) and not _OF_HANDS.search(words):
         return _TELLS_LEGS.search(beat.text) is not None  # who "enjoys a quiet afternoon" does with bent legs too
     return not (OF_LIMBS.search(words) and (beat.kind == "feeling" or RESTS.match(beat.text)))
+
+
+def _about(index: int, shots: Sequence[Shot]) -> list[Shot]:
+    """What is done just before a beat that nothing shows by itself, and what is done next, with the way there: a mood
+    is seen there or nowhere."""
+    before = [max(shot.beats) for shot in shots if shot.beats and max(shot.beats) < index]
+    after = [min(shot.beats) for shot in shots if shot.beats and min(shot.beats) > index]
+    near = {*([max(before)] if before else []), *([min(after)] if after else [])}
+    return [shot for shot in shots if not near.isdisjoint(shot.beats)]
+
+
+def _is_long_enough(shot: Shot) -> bool:
+    """Whether a mood can be seen in it: for so long, once it has been moved."""
+    return shot.reached is None or shot.seconds >= FELT
 
 
 def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:
@@ -256,8 +286,8 @@ def _why(beat: Beat, index: int, shots: Sequence[Shot]) -> str:
     if beat.why or beat.kind == "undone":
         return beat.why or UNDONE
     own = [shot for shot in shots if index in shot.beats]
-    if not own and beat.kind == "feeling" and beat.emotion is not Emotion.NEUTRAL:  # in what is done in that mood
-        own = [shot for shot in shots if shot.mood is beat.emotion]
+    if not own and beat.kind == "feeling" and beat.emotion is not Emotion.NEUTRAL:
+        own = [shot for shot in _about(index, shots) if shot.mood is beat.emotion and _is_long_enough(shot)]
     if not own:
         return "no keyframe is left that shows it"
     # What only leads there shows a beat just where nothing else does: "walks to the window".

@@ -10,7 +10,7 @@ from pydantic import AliasChoices, BaseModel, BeforeValidator, ConfigDict, Field
 from pydantic_core import PydanticKnownError
 
 from motion_backend.emotion_words import emotion_of
-from motion_backend.motion import Does, Emotion, Skill, skills_named
+from motion_backend.motion import Does, Emotion, Reacts, Skill, skills_named
 from planner_service.themes.opening_words import spelt_out
 
 EMOTIONS: Final[tuple[Emotion, ...]] = tuple(Emotion)
@@ -150,6 +150,17 @@ class ShortScript(_ScriptPart):
     """Raised when a script is kept again under its id."""
 
 
+class Reacted(_ScriptPart):
+    """Something that happens, before or after a keyframe, and how the body takes it."""
+
+    beats: tuple[int, ...]
+    """The theme's beats that tell of it."""
+    how: Reacts
+    at: Line = ""
+    """Where it is: "door", "window" or a piece of furniture; empty: the nearest door."""
+    after: bool = False
+
+
 class PlannedKeyframe(Keyframe):
     """A keyframe of a long script, with where it came from."""
 
@@ -164,6 +175,8 @@ class PlannedKeyframe(Keyframe):
     """The object of the home that somebody chose for it; None: one is found."""
     already: bool = False
     """Whether the body sits or lies there when the story begins; so only of the first keyframe."""
+    reacts: tuple[Reacted, ...] = Field((), exclude_if=lambda rows: not rows)
+    """What happens besides, and is reacted to."""
 
 
 class Retrieved(_ScriptPart):
@@ -174,10 +187,18 @@ class Retrieved(_ScriptPart):
     score: float
 
 
+REACTED: Final = "the body reacts to it"
+"""Why what happens, and nobody does, is not acted."""
 BeatKind = Literal["deed", "feeling", "undone", "memory", "other", "speech"]
 """What a beat is: something done at home now · how somebody feels · what is not done, or only wished for · what
 happened before and is only thought of · what somebody else or the world does, or, of nobody, what is only told: "it is
 Sunday" · what is said."""
+
+
+HAPPENS: Final = "it happens, and nobody does it"
+"""Why what weather and things do is not acted."""
+WISHED: Final = "it is only wished for"
+"""Why what somebody wants is not acted."""
 
 
 class Beat(_ScriptPart):
@@ -211,8 +232,10 @@ class Beat(_ScriptPart):
 
     @property
     def asked(self) -> bool:
-        """Whether the theme asks for it: all but what is left undone, and what is told and nobody does."""
-        return self.kind != "undone" and (self.kind != "other" or bool(self.who))
+        """Whether the theme asks for it: all but what is left undone or wished for, what nobody does, and what only
+        happens, and is reacted to."""
+        told = self.kind == "undone" or (self.kind == "other" and not self.who)
+        return not (told or self.why == HAPPENS or self.why.startswith(REACTED))
 
 
 Pronouns = Literal["he", "she", "they"]

@@ -17,8 +17,9 @@ MOVED: Final = re.compile(
 """Words of a beat in which a thing moves."""
 REACHED_INTO: Final = re.compile(
     r"\b(?:look|peer|peek|glanc|star|gaz|rummag|search|dig|dug|hunt|root|reach|t[ao]k|get|got|fetch|grab|find|found|put"
-    r"|plac|stor|hid)\w*\b(?:(?!\b(?:and|then)\b)[^,;.])*?\b(?:in|into|inside|through|from|out of) "
-    r"(?:the|an?|his|her|their|my|its) (?:\w+ )??(cabinet|cupboard|wardrobe|closet|fridge|refrigerator|drawer)\b",
+    r"|plac|stor|hid)\w*\b(?:(?!\b(?:and|then)\b)[^,;.])*?\b(?P<there>(?:in|into|inside|through|from|out of) "
+    r"(?:the|an?|his|her|their|my|its) (?:\w+ )??"
+    r"(?P<what>cabinet|cupboard|wardrobe|closet|fridge|refrigerator|drawer))\b",
     re.IGNORECASE,
 )
 """Words of a beat in which a hand goes into what is shut."""
@@ -45,14 +46,26 @@ _SWITCHED: Final = re.compile(
 def still_in(text: str, seen: Collection[Does] = ()) -> tuple[str, ...]:
     """What of a beat's words is not seen though a hand is: "that the door moves", "that it goes off"; `seen` is what
     becomes of pieces while it is acted."""
-    moved, inner = MOVED.search(text), REACHED_INTO.search(text)
-    if moved:
-        known = not {"open", "close"}.isdisjoint(seen)
-        return () if known else (f"that the {moved[1].lower()}{moved[2]} move{'' if moved[2] else 's'}",)
-    quenched = QUENCHED.search(text)
-    if quenched:
-        known = "off" in seen
-        return () if known else (f"that it goes {'down' if quenched[0].endswith('down') else 'off'}",)
-    if LIT.search(text) and _SWITCHED.search(text):
-        return () if "on" in seen else ("that it goes on",)
-    return (f"that the {inner[1].lower()} opens",) if inner and not {"into", "open"} & {*seen} else ()
+    told, _ = _still(text, seen)
+    return (told,) if told else ()
+
+
+def still_words(text: str, seen: Collection[Does] = ()) -> str:
+    """The words themselves: "opens the door"; "" where all is seen."""
+    return _still(text, seen)[1]
+
+
+def _still(text: str, seen: Collection[Does]) -> tuple[str, str]:
+    if moved := MOVED.search(text):
+        known, told = {"open", "close"}, f"that the {moved[1].lower()}{moved[2]} move{'' if moved[2] else 's'}"
+        return ("", "") if known & {*seen} else (told, moved[0])
+    if quenched := QUENCHED.search(text):
+        told = f"that it goes {'down' if quenched[0].endswith('down') else 'off'}"
+        return ("", "") if "off" in seen else (told, quenched[0])
+    lit, switched = LIT.search(text), _SWITCHED.search(text)
+    if lit and switched:
+        words = text[min(lit.start(), switched.start()) : max(lit.end(), switched.end())]
+        return ("", "") if "on" in seen else ("that it goes on", words)
+    inner = REACHED_INTO.search(text)
+    hidden = inner is not None and not {"into", "open"} & {*seen}
+    return (f"that the {inner['what'].lower()} opens", inner["there"]) if inner and hidden else ("", "")

@@ -13,10 +13,10 @@ from planner_service.scripts.acted_beats import RESTS
 from planner_service.scripts.emotions import feelings
 from planner_service.scripts.script import Beat, BeatKind
 from planner_service.themes.clause import Clause
-from planner_service.themes.language import ANOTHER, ENGLISH, foreign_language, language_of
-from planner_service.themes.lexicon import grammar, is_known_word, lemma_of, participle
+from planner_service.themes.lexicon import grammar, lemma_of, participle
 from planner_service.themes.memories import RECALLING, recalled_in
 from planner_service.themes.no_deeds import tells_no_deed
+from planner_service.themes.no_theme import asks_for_something, no_prose
 from planner_service.themes.outline import lines_of
 from planner_service.themes.protagonist import called, head_of, hero_of, is_hero, is_person, tells_of_others
 from planner_service.themes.sentence_parser import clauses_of_text
@@ -53,12 +53,6 @@ _RECEIVERS: Final = frozenset(
 _BY_THEN: Final = re.compile(r"\bby (?:noon|midnight|dawn|dusk|evening|night|now|then|\d+|one|two|three|four|five|six|"
                                 r"seven|eight|nine|ten|eleven|twelve)\b", re.IGNORECASE)  # fmt: skip
 """By this what had been done belongs to the story: "by noon she had unpacked"."""
-_ASKED: Final = re.compile(r"(?i)(?:please|(?:can|could|would|will) you|tell me|show me|give me|help me)\b")
-_QUESTIONS: Final = re.compile(
-    r"(?i)(?:\s*(?:what|which|how|where|why|who|is|are|does|do|can|could|will|would|should)\b[^.!?]*\?)+"
-)
-_ASKING: Final = frozenset(("", "it", "you", "i", "me", "please"))
-"""Who does things in a request, and is nobody whose story it is."""
 _HELD_THERE: Final = re.compile(
     r"(?:his|her|their|my|one|both) (?:\w+ )?(?:hands?|fingers?|thumb|palms?|wrists?) (?:under|in|on|against) ",
     re.IGNORECASE,
@@ -90,9 +84,6 @@ _MADE_UP: Final = re.compile(
     re.IGNORECASE,
 )
 """What people do who were angry with each other."""
-_LIST: Final = 5
-"""Things, and nothing else, from which on a sentence only lists them."""
-_CODE: Final = re.compile(r"[{}<>;=\[\]_|\\^*/+]")
 
 
 class ThemeError(UserError):
@@ -115,6 +106,8 @@ class ReadBeat:
     """The mood that its own words show."""
     room: str | None = None
     """The room it names."""
+    hero: str = ""
+    """Whom the theme is about, in its words."""
 
     @property
     def text(self) -> str:
@@ -147,11 +140,10 @@ def beats_of(theme: str) -> tuple[ReadBeat, ...]:
     """What a theme says happens, in the order of time. Raises ThemeError as `clean` does, and for other languages."""
     text = clean(theme)
     lines = lines_of(text)
-    _refuse_foreign(lines)
+    if why := no_prose(lines):
+        raise ThemeError(f"{text[:60]!r} {why}. {LANGUAGE}")
     clauses = clauses_of_text(text)
-    asks = _ASKED.match(lines) and all(one.doer.lower() in _ASKING for one in clauses)
-    told = {one.doer.lower() for one in clauses if is_person(one.doer)} - grammar().subjects - {"me", "us"}
-    if asks or (_QUESTIONS.fullmatch(lines) and not told):
+    if asks_for_something(lines, clauses):
         raise ThemeError(f"{text[:60]!r} asks for something, and tells of nobody.")
     return read_beats(clauses)
 
@@ -220,7 +212,7 @@ def _read(clause: Clause, hero: str, pronoun: str, of_others: bool, recalled: bo
         emotion = None
     beat = Beat(text=_bounded(text), emotion=emotion or Emotion.NEUTRAL, kind=kind, who=_bounded(who, 80))
     clause = replace(clause, text=clause.plainly) if clause.plainly and not who else clause
-    return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None))
+    return ReadBeat(beat, clause, sure, emotion, next(iter(rooms_in(text)), None), hero)
 
 
 def _is_frightened(clause: Clause) -> bool:
@@ -298,23 +290,6 @@ def names_a_thing(clause: Clause) -> bool:
         and lemma_of(words[-1]) in things()
         and known.prepositions.isdisjoint(words)
     )
-
-
-def _refuse_foreign(text: str) -> None:
-    words = [token.low for token in tokens_of(text) if token.text[:1].isalpha()]
-    plain = [token.low for token in tokens_of(text) if token.text.isalpha() and token.text.islower()]
-    known_words = sum(map(is_known_word, plain))
-    unknown = len(plain) > 3 and 2 * known_words < len(plain)
-    foreign = 10 * known_words < 9 * len(plain) and language_of(text) not in (ENGLISH, ANOTHER)  # "no TV, no phone"
-    if unknown or foreign or not any(re.search(r"[a-z]", word) for word in words):
-        language = foreign_language(text)
-        what = f"looks like {language}" if language != ANOTHER else "is no everyday English"
-        raise ThemeError(f"{text[:60]!r} {what}. {LANGUAGE}")
-    known = [lemma_of(word) in things() or is_known(word) or is_known(lemma_of(word)) for word in words]
-    if len(words) >= _LIST and all(known) and "." not in text.strip().rstrip("."):
-        raise ThemeError(f"{text[:60]!r} is a list of things. {LANGUAGE}")
-    if len(_CODE.findall(text)) > max(3, len(words) / 3):
-        raise ThemeError(f"{text[:60]!r} is no prose. {LANGUAGE}")
 
 
 def _moods(read: Sequence[ReadBeat]) -> list[ReadBeat]:

@@ -55,6 +55,7 @@ class ConstructionWords:
     """data/constructions.toml."""
 
     events: dict[str, str]
+    feelings: dict[str, str]
     words: dict[str, Words]
     limb: tuple[LimbRow, ...]
 
@@ -164,6 +165,13 @@ def _of_event(clause: Clause) -> list[Clause]:
     falls = event == "sleep" and not clause.denied
     words = ("fall", "asleep") if falls else (event, "his", "head") if event == "shake" else (event,)
     return [replace(_meaning(clause, words, who), unable=clause.unable or (clause.denied and event == "sleep"))]
+
+
+def _of_feeling(clause: Clause) -> list[Clause]:
+    """What comes over somebody is how they are: "fear grips her", "anger rises in him"."""
+    means = _known().feelings.get(lemma_of(_head(clause.subject)))
+    who = _undergoer(clause)[0] if means and clause.verb in _words("overcoming") else ""
+    return [_meaning(clause, (means or "").split(), who)] if who else []
 
 
 def _of_limbs(clause: Clause) -> list[Clause]:
@@ -452,6 +460,7 @@ def light_readings(lemmas: Sequence[str]) -> list[tuple[str, ...]]:
 
 
 _CONSTRUCTIONS: Final[tuple[Callable[[Clause], list[Clause]], ...]] = (
+    _of_feeling,
     _of_limbs,
     _of_event,
     _in_event,

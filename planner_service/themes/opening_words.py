@@ -16,7 +16,8 @@ _LOOKS: Final = re.compile(
     re.IGNORECASE,
 )
 _HANDLES: Final = re.compile(
-    r"\b(?:open|clos|shut|draw|pull|part|fling|throw|crack|latch|unlatch|wip|clean|wash)\w*\s"
+    r"(?<!\bthe )(?<!\ban )(?<!\bher )(?<!\bhis )(?<!\btheir )"  # but not "by the open window"
+    r"\b(?:open|clos|shut|draw|drew|pull|part|fling|flung|throw|threw|crack|latch|unlatch|wip|clean|wash)\w*\s"
     r"(?:(?!by|at|near|beside|under|from|to|on|in\b)\w+\s){0,3}(?:windows?|curtains?|blinds?|shutters?)\b",
     re.IGNORECASE,
 )
@@ -25,7 +26,7 @@ _OF_A_HOUSE: Final = (
     r"|garden|balcony|garage|cellar|study|room) )*"
 )
 _OPENS: Final = re.compile(
-    r"\b(?:open|clos|shut|slam|bang|lock|unlock|bolt|unbolt|latch|unlatch|answer|push|pull|kick|yank|throw|fling|swing"
+    r"\b(?:open|clos|shut|slam|bang|lock|unlock|bolt|unbolt|latch|unlatch|answer|push|pull|kick|yank|throw|threw|fling|flung|swing|swung"
     rf"|get|knock|check|tr(?:y|ies|ied))\w*\s(?:\w+ly\s)?(?:(?:at|on|against|behind) )?{_OF_A_HOUSE}"
     r"(?:doors?|doorbell|bell|doorknob|door handle)\b(?! of)"
     r"|\banswer\w* (?:the|a) knock\b"

@@ -52,7 +52,7 @@ def lines_of(theme: str) -> str:
     if len(_LETTER.findall(text)) >= _FEWEST_LETTERS:
         text = _LETTER.sub("\n", text)
     if _NUMBER.findall(text)[:2] == ["1", "2"]:
-        text = _NUMBER.sub("\n", text)
+        text = re.sub(r"[ \t]*[,;:](?=\s*(?:\n|$))", "", _NUMBER.sub("\n", text))
     notes = not any(one["mark"] for one in _SLASH.finditer(text)) or _NUMBERED.search(text)
     end = "\n" if notes else " "
     text = _NUMBERED.sub("\n", _SLASH.sub(lambda one: one["mark"] + end, text))

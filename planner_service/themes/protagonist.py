@@ -176,6 +176,10 @@ def _pronouns_by(pattern: re.Pattern[str], text: str) -> str:
     return "" if found is None else "she" if found["she"] else "he"
 
 
+_AT_DOORS: Final = ("knock", "ring", "call")
+"""What somebody does outside, of whom nobody tells more: "somebody knocks, and he gets up"."""
+
+
 def hero_of(clauses: Sequence[Clause]) -> str:
     """Whom the theme is about, as it is written first: the narrator, else the person that its pronouns fit best."""
     pronoun = _told_most(clauses)
@@ -186,7 +190,8 @@ def hero_of(clauses: Sequence[Clause]) -> str:
     if mains and mains[0].lower() == "you":
         return "you"
     people = [clause for clause in told if is_person(clause.subject) and not _are_things(clause, told)]
-    people = [one for one in people if not (pronoun and one is not told[0] and one.subject.lower() in _SOMEBODY)]
+    others = [one for one in people if one.subject.lower() in _SOMEBODY and pronoun]
+    people = [one for one in people if one not in others or (one is told[0] and one.verb not in _AT_DOORS)]
     done = (one for one in clauses if not (one.aside or one.joint == "to" or (one.denied and not one.unable)))
     deeds = Counter(one.doer for one in done)
     first = min(((one.sentence, one.place) for one in people if _stands_for(one.subject)), default=(len(clauses), 0))

@@ -35,6 +35,8 @@ from planner_service.themes.verb_group import NEARLY, verb_group
 _QUOTE: Final = re.compile(r"[“\"]([^”\"\n]{1,400})[”\"]|(?<!\w)['‘]([^'’\n]{2,200}[.,!?])['’](?!\w)")
 _PLAIN: Final = re.compile(r"[A-Za-z ,'’-]+[.!?]?\s*")
 _SEMI: Final = re.compile(r"\n+|;\s+|:\s+|\s+[–—]\s*|\s*[–—]\s+|\s+-{1,2}\s+|…\s*|\.{2,}\s*|\s*[()\[\]]\s*")
+_AT_ALL: Final = re.compile(r"\b(?:a single|so much as|even|any(?:thing|one|body)?)\b", re.IGNORECASE)
+"""Words of what has not been done at all."""
 _SUPPOSING: Final = frozenset(("if", "unless"))
 """Joints before what is only thought of: "if he calls"."""
 
@@ -224,6 +226,11 @@ def _segmenter() -> Any:
     return Segmenter(language="en", clean=False)
 
 
+def _is_only_when(piece: Piece) -> bool:
+    """Whether it is told that nothing of it is done yet: "before she touches | a single plate"."""
+    return piece.joint == "before" and _AT_ALL.search(piece.text) is not None
+
+
 def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
     """The clauses of a piece: what is told before its subject, its own, second deeds without a joint, and asides."""
     tokens, relative = without_relative(_without_opening(piece.tokens))
@@ -250,7 +257,7 @@ def _clause(piece: Piece, quotes: Sequence[str], sentence: int) -> list[Clause]:
         _text(piece.source, words), subject, lemmas[0] if lemmas else "", lemmas, piece.joint,
         denied=group.denied or hindered or _does_none(words[group.place :]), unable=group.unable, perfect=group.perfect,
         absolute=bool(subject) and words[0].low.endswith("ing"),
-        aside=piece.joint in _SUPPOSING or piece.tokens[0].low in ("if", "though"),
+        aside=piece.joint in _SUPPOSING or piece.tokens[0].low in ("if", "though") or _is_only_when(piece),
         quotes=_quotes(tokens, quotes), sentence=sentence,
     )  # fmt: skip
     parts = [first] if group.denied and not group.unable else _parted(first, words, group.place, piece.source)
@@ -493,7 +500,7 @@ def _lemmas(tokens: Sequence[Token]) -> tuple[str, ...]:
     if len(tokens) > 1 and tokens[0].low == "lay" and tokens[1].low in grammar().marks | grammar().numbers:
         found[0] = "lay"  # "I lay the table"
     at = 1 + ([token.low for token in tokens[1:2]] in (["down"], ["back"]))
-    if found[:1] == ["lay"] and (len(tokens) <= at or tokens[at].low in _LYING_AT):  # "he lays on the sofa"
+    if found[:1] == ["lay"] and (tokens[at].low in _LYING_AT if len(tokens) > at else at > 1):  # "he lays on the sofa"
         found[0] = "lie"
     return tuple(found)
 

@@ -26,6 +26,8 @@ from scene_graphs.furniture import catalogue, is_known
 _WORD: Final = re.compile(r"(?<![\w'’-])[a-z]{4,}(?![\w'’-])")
 _FEWEST: Final = 5
 """Letters of a word in which there may be one too many or too few."""
+_SLANG: Final = frozenset(("booty", "hiit"))
+"""Words that are spelt so, and that the dictionary does not have."""
 _VOWELS: Final = "aeiou"
 
 
@@ -57,7 +59,13 @@ def _is_spelt(word: str) -> bool:
     known = kinds_of(word) or is_known_word(word) or is_known(word) or word in things()
     names = theme_words()
     named = word in names["names_she"] | names["names_he"] | names["names_they"] | names["people"]
-    return bool(known) or named or word in grammar().numbers or word.endswith("th") or word in grammar().slang
+    return (
+        bool(known)
+        or named
+        or word in grammar().numbers
+        or word.endswith("th")
+        or word in _SLANG | grammar().slang.keys()
+    )
 
 
 def _inflected(word: str) -> str:

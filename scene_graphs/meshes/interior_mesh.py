@@ -56,20 +56,31 @@ CURTAIN_FABRICS = tuple(m.FABRICS[index] for index in (4, 0, 2))
 def floor_meshes(home: Home) -> Iterator[Mesh]:
     """Every room's floor as planks or tiles in two tones, and a threshold in every doorway."""
     for index, room in enumerate(home.rooms):
-        kind = room.layout.room_type
-        tones = _FLOORS.get(kind, _OTHER_FLOOR)
-        outline = np.asarray(room.layout.floor_polygon)
-        boards = _tiles(outline) if kind == "dining_room" else _planks(outline)
-        shapes: tuple[list[Shape], list[Shape]] = ([], [])
-        for tone, corners in boards:
-            shapes[tone].append(flat(room.pose.to_home(corners)))
-        for material, pieces in zip(tones, shapes, strict=True):
-            if pieces:
-                yield _mesh(f"floor {index}", material, pieces)
+        yield from _floor(home, index, np.asarray(room.layout.floor_polygon))
     for number, doorway in enumerate(home.doorways):
         start, along, across, length = _frame(doorway)
         sill = start + np.array([[0, -0.08], [0, 0.08], [length, 0.08], [length, -0.08]]) @ np.stack([along, across])
         yield _mesh(f"floor threshold {number}", m.WOODS[0], [flat(sill, 0.002)])
+
+
+def wide_floor_meshes(home: Home, index: int, beyond: float) -> Iterator[Mesh]:
+    """A rectangular floor like that of a room, which reaches so many metres beyond it to every side."""
+    outline = np.asarray(home.rooms[index].layout.floor_polygon)
+    (x0, z0), (x1, z1) = outline.min(axis=0) - beyond, outline.max(axis=0) + beyond
+    yield from _floor(home, index, np.array([(x0, z0), (x1, z0), (x1, z1), (x0, z1)]))
+
+
+def _floor(home: Home, index: int, outline: Array) -> Iterator[Mesh]:
+    """The floor of a room within an outline."""
+    room = home.rooms[index]
+    kind = room.layout.room_type
+    boards = _tiles(outline) if kind == "dining_room" else _planks(outline)
+    shapes: tuple[list[Shape], list[Shape]] = ([], [])
+    for tone, corners in boards:
+        shapes[tone].append(flat(room.pose.to_home(corners)))
+    for material, pieces in zip(_FLOORS.get(kind, _OTHER_FLOOR), shapes, strict=True):
+        if pieces:
+            yield _mesh(f"floor {index}", material, pieces)
 
 
 def wall_meshes(home: Home) -> Iterator[Mesh]:

@@ -40,8 +40,11 @@ SKY, SUN, HILLS = (0.75, 1.25, 1.75), (1.9, 1.6, 0.6), ((0.45, 1.15, 0.55), (0.2
 """What a screen shows."""
 ROOM_DOOR, CURTAINS = "room_door", "curtain_pair"
 """What doors and curtains of rooms are called, as pieces of their own."""
-DAY: Final = (1.55, 1.70, 1.85)
-"""Of what is outside an open door."""
+HALL_WALL, HALL_SIDE = (0.93, 0.89, 0.81), (0.86, 0.82, 0.75)
+HALL_FLOOR, SKIRTING = (0.62, 0.55, 0.48), (0.97, 0.96, 0.94)
+"""Of the hall outside a door: the wall ahead, those at its ends, what one treads on, and the foot of its walls."""
+HALL_HEIGHT, SKIRTED = 2.9, 0.09
+"""Of its walls, and of their foot (metres)."""
 FOLD: Final = 0.07
 """Of a curtain (metres)."""
 FLAME, WATER = (0.55, 0.85, 1.9), (0.95, 1.25, 1.45)
@@ -74,6 +77,10 @@ class Mechanism:
     """Whether it is moved when it is shut, as curtains are."""
     leaf: tuple[float, float] = (0.0, 0.0)
     """From where to where along x what swings or slides, the last of `moving`, reaches from its pivot."""
+    grip: Point3 | None = None
+    """Where a hand takes hold of that, when it is shut."""
+    always: bool = False
+    """Whether it is drawn shut as well: what is drawn of the piece at rest is then left out."""
 
 
 @lru_cache(maxsize=512)
@@ -93,28 +100,39 @@ def mechanisms(placed: Placed) -> tuple[Mechanism, ...]:
 
 
 def _room_door(placed: Placed) -> Mechanism:
-    """A door of a room, which opens outwards, and the day that is seen where it was."""
-    leaf, handle = placed.shape
-    (x0, y0, z0), (x1, y1, z1) = leaf.low, leaf.high
-    hinge, turn = (x0, SWING) if handle.center[0] > leaf.center[0] else (x1, -SWING)
-    pivot = (hinge, y0, z0)
+    """A door of a room, which opens inwards, and the hall behind it."""
+    leaf, handle, hall = placed.shape
+    (x0, y0, _), (x1, _, z1) = leaf.low, leaf.high
+    hinge, turn = (x0, -SWING) if handle.center[0] > leaf.center[0] else (x1, SWING)
+    pivot = (hinge, y0, z1)
     board = (
         (_rgb(LEAF.color), block(leaf.low, leaf.high)),
         (_rgb(m.METAL.color), block(handle.low, handle.high)),
     )
-    day = [(DAY, _facing((x0, y0), (x1, y1), z1 + BEFORE))]
-    (left, low, _), (right, high, near) = handle.low, handle.high
-    around = ((left - BEFORE, low - BEFORE, z1), (right + BEFORE, high + BEFORE, near + BEFORE))
-    day.append((DAY, block(*around)))
-    shut = (-pivot[0], -pivot[1], -pivot[2])
-    whole = Moving((0.0, 0.0, 0.0), tuple(day))
-    swings = Moving(pivot, _moved(board, shut), turn)
-    return Mechanism("front", leaf.low, leaf.high, (whole, swings), leaf=(x0 - hinge, x1 - hinge))
+    swings = Moving(pivot, _moved(board, (-pivot[0], -pivot[1], -pivot[2])), turn)
+    behind = Moving((0.0, 0.0, 0.0), tuple(_hall(hall, (x0, x1))))
+    grip = (handle.center[0], handle.center[1], z1)
+    reach = (x0 - hinge, x1 - hinge)
+    return Mechanism("front", leaf.low, leaf.high, (behind, swings), leaf=reach, grip=grip, always=True)
 
 
-def _facing(low: tuple[float, float], high: tuple[float, float], z: float) -> Shape:
-    """A rectangle between two corners [x, y] that is seen from +Z alone."""
-    corners = [(low[0], low[1], z), (high[0], low[1], z), (high[0], high[1], z), (low[0], high[1], z)]
+def _hall(hall: Part, door: tuple[float, float]) -> Iterator[Painted]:
+    """What is seen past an open door, from the room alone: from outside, where a film cuts the wall away, it would hide
+    who is filmed."""
+    (x0, _, z0), (x1, _, z1) = hall.low, hall.high
+    tread, ends = BEFORE, (SKIRTED, HALL_HEIGHT)
+    yield HALL_FLOOR, _quad((x0, tread, z1), (x1, tread, z1), (x1, tread, z0), (x0, tread, z0))
+    yield HALL_FLOOR, _quad((door[0], tread, 0.0), (door[1], tread, 0.0), (door[1], tread, z1), (door[0], tread, z1))
+    for color, side, (low, high) in (
+        (HALL_WALL, HALL_SIDE, ends), (SKIRTING, SKIRTING, (0.0, SKIRTED)),
+    ):  # fmt: skip
+        yield color, _quad((x0, low, z0), (x1, low, z0), (x1, high, z0), (x0, high, z0))
+        yield side, _quad((x0, low, z1), (x0, low, z0), (x0, high, z0), (x0, high, z1))
+        yield side, _quad((x1, low, z0), (x1, low, z1), (x1, high, z1), (x1, high, z0))
+
+
+def _quad(*corners: Point3) -> Shape:
+    """A rectangle that is seen from where its corners go round counter-clockwise."""
     return np.array(corners), np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
 
 
@@ -158,7 +176,9 @@ def _opening(placed: Placed, part: Part, front: Front) -> Mechanism:
         leaf = Moving(pivot, _moved(board, shift), way=(0.0, 0.0, out))
     else:
         leaf = Moving(pivot, _moved(board, shift), turn=-SWING if front.hinge == x0 else SWING)
-    return Mechanism("front", front.low, front.high, (hole, leaf), leaf=(x0 - pivot[0], x1 - pivot[0]))
+    (hx0, hy0, _), (hx1, hy1, _) = front.handle[0].min(axis=0).tolist(), front.handle[0].max(axis=0).tolist()
+    grip, reach = ((hx0 + hx1) / 2, (hy0 + hy1) / 2, z1), (x0 - pivot[0], x1 - pivot[0])
+    return Mechanism("front", front.low, front.high, (hole, leaf), leaf=reach, grip=grip)
 
 
 def _tray(front: Front, out: float, color: Rgb) -> Iterator[Painted]:

@@ -148,6 +148,8 @@ TIGHT: Final = 3.0
 """The same for a step with less than 0.7 of a cell to spare."""
 WITHIN: Final = 0.6
 """How far from walkable floor a start or goal may be, in metres."""
+OUTSIDE: Final = 2.0
+"""The same of a place outside an outer door (metres)."""
 _STEPS: Final = ((1, 0), (0, 1), (1, 1), (1, -1))
 _SHARES: Final = np.arange(1, 8) / 8
 """Of a line, where one looks first whether it is free at all."""
@@ -194,7 +196,7 @@ class Walkable:
 
     def reachable(self, start: Point2, goal: Point2) -> bool:
         """Whether there is a way from start to goal."""
-        first, last = self._enter(start, WITHIN), self._enter(goal, WITHIN)
+        first, last = self._enter(start, self._within(start)), self._enter(goal, self._within(goal))
         return first is not None and last is not None and bool(self._regions[first] == self._regions[last])
 
     def sees(self, start: Point2, goal: Point2) -> bool:
@@ -315,13 +317,19 @@ class Walkable:
         return float(x), float(z)
 
     def _entry(self, which: str, start: Point2, goal: Point2) -> int:
-        number = self._enter(start if which == "start" else goal, WITHIN)
+        point = start if which == "start" else goal
+        number = self._enter(point, self._within(point))
         if number is None:
             raise NoPath(
                 f"no way from {_name(start)} to {_name(goal)}: no walkable floor within {WITHIN} m of the {which}",
                 "move the furniture there or take another place",
             )
         return number
+
+    def _within(self, point: Point2) -> float:
+        """How far from walkable floor a start or goal may be: outside a door there is none, and one goes straight."""
+        off = self.clearance(point) <= 0.0 and not self._on_floor(np.asarray(point, dtype=float)[None])
+        return OUTSIDE if off and bool(shapely.intersects_xy(self.home.thresholds, *point)) else WITHIN
 
     def _enter(self, point: Point2, within: float) -> int | None:
         """The free cell where a body at the point joins the walkable floor, or None.

@@ -79,8 +79,11 @@ export function takeWords({ take, derived_from }: Pick<Story, "take" | "derived_
   return take ? `Take ${take}` : "A take";
 }
 
-/** Whether a beat asks for something to be seen: not what is to be left undone, nor what is told and nobody does. */
-export const isAsked = ({ kind, who }: Beat): boolean => kind !== "undone" && (kind !== "other" || who !== "");
+/** Why what happens, and nobody does, is not acted. */
+const REACTED = "the body reacts to it";
+
+/** Whether a beat asks for something to be seen: not what is to be left undone, is told and nobody does, or only happens and is reacted to. */
+export const isAsked = ({ kind, who, why }: Beat): boolean => kind !== "undone" && (kind !== "other" || who !== "") && !why.startsWith(REACTED);
 
 /** "6 of 7 beats of your theme are acted."; of what is asked for: not of what is to be left undone, nor of what is told and nobody does. */
 export function beatsWords(beats: readonly Beat[]): string {

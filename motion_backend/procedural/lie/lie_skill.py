@@ -22,6 +22,7 @@ from motion_backend.procedural.sit.sit_legs import at_front
 from motion_backend.procedural.sit.sit_skill import leave_seat
 from motion_backend.procedural.sit.sit_styles import Seated
 from motion_backend.procedural.sit.sit_transition import NOTHING, lower_onto
+from motion_backend.procedural.touch.gestures import gesture
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.rotations import Array
 from scene_graphs.affordances.affordances import Spot
@@ -95,7 +96,8 @@ def lie(body: Body, part: Part) -> None:
 def stay_lying(body: Body, part: Part) -> None:
     """Lie for a while."""
     style = lie_style(part.action.emotion, part.action.caption)
-    body.add(idle(body.pose, part.hold, CALM * style.bearing.restless, body.rng, FPS))
+    held = idle(body.pose, part.hold, CALM * style.bearing.restless, body.rng, FPS)
+    body.add(gesture(held, style.doing, rng=body.rng))
 
 
 def sit_up(body: Body, bearing: Bearing, seat: Seat) -> None:

@@ -10,7 +10,7 @@ from motion_backend.motion import Emotion
 from motion_backend.procedural.emotion_style import AT_EASE, Bearing, bearing_of
 from motion_backend.procedural.lie.lie_own import CHARACTER, NOBODY, LieOwn, OwnWay, drawn_arms
 from motion_backend.procedural.own_way import drawn_way
-from motion_backend.procedural.style_sheet import Radians, read_style_sheet
+from motion_backend.procedural.style_sheet import Radians, Seconds, read_style_sheet
 
 
 @dataclass(frozen=True)
@@ -28,6 +28,10 @@ class Lying:
     nod: Radians = 0.0
     turn: Radians = 0.0
     """How far the head is lifted, and turned to the left, from where it rests."""
+    doing: str = ""
+    """What is done lying: one of `gestures.gesture_names`."""
+    stays: Seconds = 0.0
+    """How long that takes at least."""
     own: OwnWay = NOBODY
 
 

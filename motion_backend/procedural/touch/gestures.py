@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Final, Literal
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -18,11 +18,12 @@ from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.own_time import own_time
 from motion_backend.procedural.pose import ROTATIONS, Pose, interpolate, smooth, spline
 from motion_backend.procedural.touch.bursts import Burst
+from motion_backend.procedural.touch.hand_contacts import palm_on
 from motion_backend.procedural.touch.kneel import feet_behind, foot_back, foot_in_the_air
 from motion_backend.procedural.touch.touch_keys import KneelTable
 from motion_backend.procedural.walk.footsteps import yaw_of
 from motion_backend.rotations import Array
-from motion_backend.skeleton import ARM_LENGTH
+from motion_backend.skeleton import ARM_LENGTH, HAND_REST
 from scene_graphs.data_tables import read_table, table
 
 Leg = Literal["stands", "lifted", "kneels"]
@@ -136,6 +137,8 @@ class MoveKey:
     """How far the soles of both are tipped up on their balls."""
     legs: tuple[Leg, Leg] = ("stands", "stands")
     """What the left and the right do: stand, are on the way back and off the floor, or kneel on toes and knee."""
+    palms_floor_m: tuple[float, float] | None = None
+    """How far out to either side and ahead of where one stood both palms are flat on the floor."""
 
     @property
     def steps(self) -> bool:
@@ -144,7 +147,7 @@ class MoveKey:
 
     def pose(self, held: Pose, spread: float = 1.0) -> Pose:
         """That key of a single held pose; level ways of feet and pelvis are such a share of what it says."""
-        held, wide = self._knelt(held), np.array([spread, 1.0, spread])
+        stood, held, wide = held, self._knelt(held), np.array([spread, 1.0, spread])
         heading, scale = rotations.yaw_to_quat(yaw_of(held.hips)), float(held.pelvis[1]) / STANDS
         named = np.array([bool(name) for name in self.arms])
         wrists, poles = arm_arrays(*(name or "hang" for name in self.arms))
@@ -154,7 +157,7 @@ class MoveKey:
         )
         tipped = rotations.axis_to_quat("x", np.asarray(self.heels_up_rad))
         rolled = BALL - rotations.rotate(tipped, BALL)
-        return replace(
+        done = replace(
             held,
             pelvis=held.pelvis + scale * rotations.rotate(heading, wide * self.pelvis_m),
             hips=rotations.compose(held.hips, rotations.rotvec_to_quat(np.array(self.hips_rad))),
@@ -171,6 +174,16 @@ class MoveKey:
             pressing=np.where(named, float(bool(self.palms)), held.pressing),
             planted=np.where(off[:, 1] > 0.0, 0.0, held.planted),
         )
+        return done if self.palms_floor_m is None else self._on_palms(done, stood, scale, heading)
+
+    def _on_palms(self, pose: Pose, stood: Pose, scale: float, heading: Array) -> Pose:
+        """A pose with both palms on the floor before where the body stood."""
+        out, ahead = self.palms_floor_m or (0.0, 0.0)
+        way = rotations.rotate(heading, np.array([[out, 0.0, ahead], [-out, 0.0, ahead]]))
+        places = stood.ankles.mean(axis=0) * [1.0, 0.0, 1.0] + scale * way + [0.0, HAND_REST, 0.0]
+        yaw = float(yaw_of(stood.hips))
+        palms = np.stack([palm_on(np.array([0.0, 1.0, 0.0]), yaw, side) for side in ("left", "right")])
+        return replace(pose, reach=places, palms=palms, reaching=np.ones(2), pressing=np.ones(2))
 
     def _knelt(self, held: Pose) -> Pose:
         """The same pose with the legs that do not stand."""
@@ -203,6 +216,8 @@ class Move:
     """How far about the body the floor is to be free, beyond what standing there needs (at 1.70 m)."""
     goes_for_room: bool = False
     """Whether who has not so much of it goes to where there is more; else all is done nearer to the spot."""
+    lane_m: tuple[float, float] | None = None
+    """How far behind and ahead of where one stood who is down on the floor for it needs that free (at 1.70 m)."""
 
     def times(self, seconds: float) -> Array:
         """When the keys are reached in so many seconds, first of them the pose that is held. (turns, 1 + keys)."""
@@ -214,6 +229,17 @@ class Move:
         if self.lingers_at_share is not None:
             found[-1, shares > self.lingers_at_share] += seconds - turns * once
         return np.asarray(found)
+
+
+class Room(NamedTuple):
+    """Free floor about a standing body (metres at 1.70 m)."""
+
+    about_m: float
+    """Beyond what standing there needs."""
+    gone_for: bool
+    """Whether it is gone to."""
+    lane_m: tuple[float, float] | None
+    """Behind and ahead, of who is down on it."""
 
 
 @table
@@ -311,10 +337,10 @@ def leaves_an_arm(doing: str) -> bool:
     return move is not None and one_hand and not any(key.arms[0] for key in move.keys)
 
 
-def room_for(doing: str) -> tuple[float, bool]:
-    """How much free floor about a standing body it takes (metres at 1.70 m), and whether that is gone to."""
+def room_for(doing: str) -> Room:
+    """What free floor about a standing body it takes."""
     move = gesture_table().moves.get(doing, Move())
-    return move.room_m, move.goes_for_room
+    return Room(move.room_m, move.goes_for_room, move.lane_m)
 
 
 def wave_of(rate: float | None, time: Array, phase: float = 0.0, burst: Burst | None = None) -> Array:
@@ -354,7 +380,7 @@ def _through_keys(held: Pose, time: Array, rows: Move, spread: float) -> Pose:
     knots = np.interp(np.append(at, time[-1]), [0.0, *time], [0.0, *clock])
     way = interpolate(knots.tolist(), [*poses * len(at), base], FPS)
     way = _arms_later(way, rows.arms_late_s * FPS)
-    added = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "elbows", "reaching", "pressing")
+    added = ("pelvis", "spine", "head", "ankles", "toes", "knees", "arms", "elbows", "reach", "reaching", "pressing")
     moved = {name: getattr(held, name) + getattr(way, name) - getattr(base, name) for name in added}
     turns = {
         name: rotations.compose(getattr(held, name), rotations.compose(rotations.inverse(start), getattr(way, name)))

@@ -19,7 +19,7 @@ from motion_backend.procedural.held_poses import UP, bend, shoulders, upright
 from motion_backend.procedural.pose import Pose, interpolate, settle_from, smooth
 from motion_backend.procedural.pose_solver import chest_frame, released, trunk_and_legs
 from motion_backend.procedural.sit.sit_transition import knees_over_feet
-from motion_backend.procedural.touch.hand_actions import Way, deed
+from motion_backend.procedural.touch.hand_actions import Way, deed, pulled
 from motion_backend.procedural.touch.hand_captions import Laid
 from motion_backend.procedural.touch.hand_contacts import is_top
 from motion_backend.procedural.touch.hand_placement import Depth, grip_of, lifted_off, placed
@@ -72,6 +72,42 @@ def touch(
 
     `depth` says how deep points (N, 3) are in furniture.
     """
+    way = way_to(start, laid, manner, skeleton, depth, keys, rng)
+    whole = lifted_off(deed(way, keys), way.laid, skeleton)
+    return _along(start, whole, manner.prone, keys)
+
+
+def pull(
+    start: Pose,
+    ends: tuple[Laid, Laid],
+    way: tuple[Array, bool],
+    manner: Manner,
+    skeleton: Skeleton,
+    depth: Depth,
+    keys: TouchKeys,
+    rng: np.random.Generator,
+) -> Pose:
+    """Bring a hand onto a handle, take that along a `way` of wrists (N, 3), and back by it or not, and come back to
+    standing. `ends` are how it is laid first and last on that way; `depth` as of `touch`."""
+    still = replace(manner, feet=())
+    first, last = (way_to(start, laid, still, skeleton, depth, keys, rng) for laid in ends)
+    return _along(start, pulled(first, last, *way, keys), manner.prone, keys)
+
+
+def _along(start: Pose, whole: Pose, prone: bool, keys: TouchKeys) -> Pose:
+    """Frames of a touch from a pose on: knees over feet, and hands that go along with the body on its way up."""
+    row = keys.reach.approach
+    whole = replace(whole, knees=whole.knees if prone else knees_over_feet(whole))
+    if not prone:
+        # A body on its way up takes the hand along before the arm is straight.
+        whole = replace(whole, reaching=whole.reaching**row.goes_along_power)
+    return settle_from(start, whole, FPS, seconds=row.settle_s)
+
+
+def way_to(
+    start: Pose, laid: Laid, manner: Manner, skeleton: Skeleton, depth: Depth, keys: TouchKeys, rng: np.random.Generator
+) -> Way:
+    """The poses from outside onto a surface, as `touch` goes through them."""
     row, varied = keys.reach.approach, keys.reach.variation
     yaw, down = float(yaw_of(start.hips)), down_on_knees(start, skeleton, keys.kneel) if manner.prone else []
     tempo = manner.bearing.tempo * float(np.exp(varied.tempo_share * np.clip(rng.normal(), -2.0, 2.0)))
@@ -111,14 +147,7 @@ def touch(
     grip = partial(grip_of, laid=laid, skeleton=skeleton, row=keys.held.rotate)
     step_in = partial(stepped, step=step, row=keys.reach.step)
     luck = float(rng.normal()) if manner.doing == "strike" else 0.0
-    way = Way(away, lead, kneeling, hand, laid, *times, grip, step_in, row.goes_along_power, luck)
-    whole = lifted_off(deed(way, keys), laid, skeleton)
-    knees = whole.knees if manner.prone else knees_over_feet(whole)
-    whole = replace(whole, knees=knees)
-    if not manner.prone:
-        # A body on its way up takes the hand along before the arm is straight.
-        whole = replace(whole, reaching=whole.reaching**row.goes_along_power)
-    return settle_from(start, whole, FPS, seconds=row.settle_s)
+    return Way(away, lead, kneeling, hand, laid, *times, grip, step_in, row.goes_along_power, luck)
 
 
 def _feet(laid: Laid, manner: Manner, skeleton: Skeleton, keys: ReachTable) -> tuple[int, ...]:

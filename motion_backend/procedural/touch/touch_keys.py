@@ -232,6 +232,22 @@ class Rotate:
 
 
 @table
+class Pull:
+    """A handle taken along."""
+
+    grips_s: float
+    """For which the hand is at it before."""
+    speed_mps: float
+    """With which it goes along, on the whole."""
+    rate_radps: float
+    """With which what swings turns, at most, on the whole (radians a second)."""
+    swing_min_s: float
+    """For which it does so at least."""
+    least_s: float
+    """For which it stays where that ends, at least."""
+
+
+@table
 class HandMove:
     """One wave that a hand is moved by over what it is at."""
 
@@ -275,6 +291,7 @@ class HeldTouches:
     recoil: Recoil
     wash: Wash
     rotate: Rotate
+    pull: Pull
     busy: dict[str, Busy]
 
 
@@ -295,6 +312,7 @@ class TouchKeys:
     stir: TouchTable
     pour: TouchTable
     strike: TouchTable
+    pull: TouchTable
 
     def of(self, doing: str) -> TouchTable:
         """The key poses of what is done (see `hand_captions.Handled`)."""
@@ -306,7 +324,7 @@ def touch_keys() -> TouchKeys:
     """The tables that are shipped."""
     deeds = {
         name: read_table("motion_backend", f"transitions/touch_{name}.toml", TouchTable)
-        for name in ("rest", "press", "wash", "rotate", "pick", "put", "knock", "stir", "pour", "strike")
+        for name in ("rest", "press", "wash", "rotate", "pick", "put", "knock", "stir", "pour", "strike", "pull")
     }
     return TouchKeys(
         read_table("motion_backend", "transitions/reach.toml", ReachTable),

@@ -9,8 +9,9 @@ from typing import Final
 
 import numpy as np
 
+from motion_backend import rotations
 from motion_backend.backend_protocol import Part
-from motion_backend.motion import FPS, Action, PhaseKind
+from motion_backend.motion import FPS, Action, Handle, PhaseKind
 from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import alive
@@ -18,7 +19,7 @@ from motion_backend.procedural.touch.hand_captions import Laid, handling_of, hol
 from motion_backend.procedural.touch.hand_contacts import free_stroke, on_edge, other_hand, palm_on
 from motion_backend.procedural.touch.hand_placement import lies_free
 from motion_backend.procedural.touch.kneel import place_to_kneel
-from motion_backend.procedural.touch.reach import Manner, arriving, touch
+from motion_backend.procedural.touch.reach import Manner, arriving, pull, touch
 from motion_backend.procedural.touch.touch_keys import touch_keys
 from motion_backend.procedural.walk.walk_skill import go
 from motion_backend.skeleton import HAND_REST
@@ -30,6 +31,10 @@ CALM: Final = 0.5
 """How restless one is whose hand is on something, against the same mood with the hands free."""
 MIN_HOLD: Final = 1.2
 """A hand stays at least so long (seconds)."""
+STEPS: Final = 33
+"""Places of a handle on its way."""
+TURNS_ALONG: Final = 0.4
+"""How much of a door's turn the hand on it goes along with: the rest turns in its grip."""
 _HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
 
 
@@ -51,11 +56,17 @@ def reach(body: Body, part: Part) -> None:
     action = part.action
     bearing = bearing_of(action.emotion, action.caption)
     spot, knelt = spot_of(action), _knelt_at(body, action)
+    if action.handle is not None:
+        body.enter(PhaseKind.WALK)
+        go(body, spot.standing, spot.facing, action)
+        body.enter(PhaseKind.TOUCH)
+        _take_along(body, part, action.handle)
+        return
     if "prone" in action.caption and knelt is None:
         body.note("no room to kneel: squats")
     asked = _HEIGHT.search(action.caption)
     if asked and asked[0].lower() != spot.height:
-        body.note(f"nothing at {asked[0].lower()} height: {spot.height}")
+        body.note(f"nothing is there at {asked[0].lower()} height: it is done at {spot.height} height")
     elif asked and spot.height == "high" and spot.point[1] < OVERHEAD * body.skeleton.scale:
         body.note("nothing overhead: no stretch")
     spot, prone = knelt or spot, knelt is not None
@@ -81,6 +92,27 @@ def reach(body: Body, part: Part) -> None:
     body.add(alive(touched, CALM * bearing.restless, body.rng, FPS))
 
 
+def _take_along(body: Body, part: Part, handle: Handle) -> None:
+    """The hand onto a handle, along with it, and back."""
+    action, spot = part.action, spot_of(part.action)
+    normal = np.asarray(spot.normal, dtype=np.float64)
+    ends = (1.0, 0.0) if handle.does == "close" else (0.0, 1.0)
+    way = handle.at(np.linspace(*ends, STEPS)) + HAND_REST * normal
+    along = rotations.axis_to_quat("y", np.asarray(TURNS_ALONG * handle.turn))
+    shut = palm_on(normal, spot.facing, action.hand)
+    palms = {0.0: shut, 1.0: rotations.compose(along, shut)}
+    first, last = (
+        Laid(wrist, palms[end], rotations.rotate(along, normal) if end else normal, action.hand)
+        for wrist, end in zip(way[[0, -1]], ends, strict=True)
+    )
+    bearing = bearing_of(action.emotion, action.caption)
+    manner = Manner(bearing, part.hold)
+    seen = body.scene.depth_about(spot.object_id)
+    goes = way, handle.does == "into"
+    taken = pull(body.pose, (first, last), goes, manner, body.skeleton, seen, touch_keys(), body.rng)
+    body.add(alive(taken, CALM * bearing.restless, body.rng, FPS))
+
+
 def _free_feet(body: Body) -> tuple[int, ...]:
     """The feet that may step: while the part before is still being done only one that steps in it anyway, the other one
     standing."""
@@ -92,6 +124,6 @@ def _free_feet(body: Body) -> tuple[int, ...]:
 
 def _knelt_at(body: Body, action: Action) -> Spot | None:
     """The spot as it is touched on the knees; None where it is not, or there is no room."""
-    if "prone" not in action.caption:
+    if "prone" not in action.caption or action.handle is not None:
         return None
     return place_to_kneel(spot_of(action), body.place, body.scene, body.skeleton.scale)

@@ -21,7 +21,7 @@ from motion_backend.procedural.contrapposto import contrapposto
 from motion_backend.procedural.emotion_style import Bearing, arm_arrays, bearing_of
 from motion_backend.procedural.held_poses import SPINE_LEAN, bend, idle, idle_table
 from motion_backend.procedural.pose import Pose, interpolate, settle_from
-from motion_backend.procedural.touch.gestures import gesture, leaves_an_arm, room_for
+from motion_backend.procedural.touch.gestures import Room, gesture, leaves_an_arm, room_for
 from motion_backend.procedural.touch.hand_captions import arms_on_the_way
 from motion_backend.procedural.walk.gait import walk_on
 from motion_backend.procedural.walk.gait_character import gait_character
@@ -126,6 +126,13 @@ OPEN_AWAY: Final = np.arange(0.0, 2.5, 0.15)
 """so far away (metres);"""
 OPEN_AHEAD: Final = (0.4, 0.8, 1.2, 1.6)
 """and so far ahead of who stands there it is open (metres)."""
+LANE: Final = 0.3
+"""A strip of floor that one is down on is free so far to either side (metres at 1.70 m);"""
+LANE_LOOKS: Final = 24
+"""at so many places along it it is looked."""
+NO_LANE: Final = "no room to stretch out on the floor: on the knees"
+KNEES: Final = 0.5
+"""How much of their way feet then go back."""
 LEAVES_BEFORE = 0.5
 """So far before its end (metres) a way is left by who goes to another place near there."""
 
@@ -298,6 +305,50 @@ def _free(body: Body, place: Point) -> float:
     return float(walkable.field.at(np.array([place]))[0]) - walkable.radius
 
 
+def _make_room(body: Body, action: Action, needed: Room) -> float:
+    """Go to where there is room for what is done on the spot; returns how much of its ways over the floor there is."""
+    room = needed.about_m * body.skeleton.scale
+    if needed.lane_m is not None:
+        wide, place, yaw = _open_lane(body, needed.lane_m)
+        go(body, place, yaw, replace(action, caption="walk"))
+        body.enter(PhaseKind.STAND)
+        if wide < LANE * body.skeleton.scale:
+            body.note(NO_LANE)
+            return KNEES
+        return 1.0
+    if needed.gone_for and action.object_id is None and _free(body, body.place) < room:
+        go(body, *_open_floor(body, room), replace(action, caption="walk"))
+        body.enter(PhaseKind.STAND)
+    return min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0
+
+
+def _open_lane(body: Body, lane: tuple[float, float]) -> tuple[float, Point, float]:
+    """How wide the nearest free strip of floor is to either side (metres), where one stands on it and looks along it;
+    the widest where none is wide enough. It begins so far behind and ends so far ahead (metres at 1.70 m)."""
+    scale, wanted = body.skeleton.scale, LANE * body.skeleton.scale
+    yaws = body.yaw + np.array(SWING_TURNS)
+    ways = np.stack([np.sin(yaws), np.cos(yaws)], axis=-1)
+    along = np.linspace(-lane[0], lane[1], LANE_LOOKS)[:, None, None] * scale * ways  # (looks, yaws, 2)
+    best = (-1.0, body.place, body.yaw)
+    for place in _in_sight(body):
+        free = body.scene.walkable.field.at((np.array(place) + along).reshape(-1, 2)).reshape(LANE_LOOKS, -1)
+        wide = np.minimum(free.min(axis=0), wanted)
+        turn = int(np.argmax(wide))
+        if wide[turn] > best[0]:
+            best = (float(wide[turn]), place, float(rotations.wrap(yaws[turn])))
+        if best[0] >= wanted:
+            break
+    return best
+
+
+def _in_sight(body: Body) -> list[Point]:
+    """Places to stand at that are in sight, the nearest first."""
+    yaws, here = np.arange(OPEN_WAYS) * 2 * np.pi / OPEN_WAYS, np.array(body.place)
+    ways = np.stack([np.sin(yaws), np.cos(yaws)], axis=-1)
+    found = [body.place, *(tuple((here + away * way).tolist()) for away in OPEN_AWAY[1:] for way in ways)]
+    return [place for place in found if body.scene.walkable.sees(body.place, place) and _free(body, place) > 0]
+
+
 def _open_floor(body: Body, room: float) -> tuple[Point, float]:
     """The nearest place in sight with so much room about it (metres), else the roomiest; and where one looks there."""
     yaws, here = np.arange(OPEN_WAYS) * 2 * np.pi / OPEN_WAYS, np.array(body.place)
@@ -331,12 +382,7 @@ def stay(body: Body, part: Part) -> None:
     if style.doing in FLUNG:
         go(body, body.place, _where_legs_swing(body), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
-    room, goes = room_for(style.doing)
-    room *= body.skeleton.scale
-    if goes and action.object_id is None and _free(body, body.place) < room:
-        go(body, *_open_floor(body, room), replace(action, caption="walk"))
-        body.enter(PhaseKind.STAND)
-    spread = min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0
+    spread = _make_room(body, action, room_for(style.doing))
     arms = idle_table().beside(style.bearing.arms, habit) if leaves_an_arm(style.doing) else style.bearing.arms
     bearing = replace(style.bearing, arms=arms_on_the_way(body.pose, arms))
     at_ease = replace(body.pose, **_carriage(replace(bearing, arms=arms_on_the_way(body.pose, ("hang", "hang")))))

@@ -16,6 +16,7 @@ from motion_backend.formats import FORMATS, encode
 from motion_backend.formats.glb_film import body_glb, props_glb, scene_glb
 from motion_backend.formats.usd_film import UsdUnavailableError, check_usd, film_usd
 from motion_backend.motion import Character
+from motion_backend.props import replaced
 from planner_service.api.dependencies import PartsDep
 from planner_service.api.errors import Conflict, NotFound, NotProvided, NotReady, Unprocessable
 from planner_service.api.idempotent_submission import accept, repeated
@@ -194,9 +195,11 @@ def home(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
 
 @stories_router.get("/{story_id}/scene.glb", response_class=Response, responses={200: {"content": {GLB: {}}}})
 def scene(record: RecordDep, request: Request, stories: StoriesDep) -> Response:
-    """The home alone."""
+    """The home alone, but for doors that its story opens, which are among the props."""
     etag = _made(record, "home")
-    return unchanging(request, f"{etag}-scene", lambda: scene_glb(home_from_dict(_home_row(stories, record))), GLB)
+    role = role_in(record)
+    tag = "-".join([etag, "scene", *(name.replace(" ", "_") for name in sorted(replaced(role)))])
+    return unchanging(request, tag, lambda: scene_glb(home_from_dict(_home_row(stories, record)), role), GLB)
 
 
 @stories_router.get("/{story_id}/props.glb", response_class=Response, responses={200: {"content": {GLB: {}}}, 204: {}})

@@ -5,12 +5,13 @@ from __future__ import annotations
 import shutil
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from small_home import small_home
 
-from motion_backend import rotations
+from motion_backend import rotations, walk_driver
 from motion_backend.backends import BrokenBackendError, load_backend
 from motion_backend.diffusion import backend
 from motion_backend.diffusion.backend import WEIGHTS, DiffusionBackend, walking
@@ -179,3 +180,34 @@ def test_without_its_weights_the_backend_is_broken_and_says_which(
 def test_a_way_that_bends_is_told_by_where_it_is_in_a_window() -> None:
     places = np.stack([np.linspace(0.0, 1.0, 42), np.linspace(0.0, 1.0, 42)], axis=1)
     assert Ahead(places).yaws[-1] == pytest.approx(np.pi / 4)
+
+
+def test_a_stretch_ends_a_step_earlier_where_the_rules_would_come_into_furniture(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    ends = []
+    for deep in (0.0, 0.1):
+        depths = iter([deep])
+        monkeypatch.setattr(walk_driver._Stretch, "deep", property(lambda _, depths=depths: next(depths, 0.0)))
+        stretches = list[int]()
+        after = walk_driver._Walk.after_stretch
+
+        def counted(*told: Any, after: Any = after, stretches: list[int] = stretches) -> Any:
+            stretches.append(len(told[2]))
+            return after(*told)
+
+        monkeypatch.setattr(walk_driver._Walk, "after_stretch", counted)
+        across_the_room("diffusion")
+        monkeypatch.setattr(walk_driver._Walk, "after_stretch", after)
+        ends.append(stretches)
+    assert ends[0][0] == ends[1][0]
+    assert 8 < ends[1][0] - ends[1][1] < 30
+
+
+def test_a_walk_keeps_to_a_bending_way() -> None:
+    past = standing_at_the_origin()
+    turned = np.arange(360)[:, None] / 30 / 2.5
+    way = Way(past.root[-1, [0, 2]] + 2.5 * np.hstack([1 - np.cos(turned), np.sin(turned)]))
+    made = follow(LearnedGait(walking(), gait=4).begin(past, np.random.default_rng(4)), past, way)
+    away = np.linalg.norm(made.root[90:, None, [0, 2]] - way.places, axis=2).min(axis=1)
+    assert np.quantile(away, 0.95) < 0.13

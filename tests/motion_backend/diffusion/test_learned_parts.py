@@ -20,11 +20,11 @@ from motion_backend.diffusion.passage_checks import RefusedError, check
 from motion_backend.diffusion.planned_passages import PlannedPassage
 from motion_backend.diffusion.windows import settled
 from motion_backend.director import Director, shares
-from motion_backend.motion import Action, Character, Motion, PhaseKind, Skill
+from motion_backend.motion import Action, Character, Emotion, Motion, PhaseKind, Skill
 from motion_backend.procedural.backend import ProceduralBackend
 from motion_backend.rotations import Array
 from motion_backend.skeleton import INDEX, build_skeleton
-from motion_backend.walk_generator import Frames
+from motion_backend.walk_generator import LOOK, Frames
 
 
 def sits() -> Action:
@@ -161,6 +161,18 @@ def stood_for(count: int) -> tuple[Array, Array]:
     return np.repeat(root, count, axis=0), np.repeat(local, count, axis=0)
 
 
+@pytest.mark.parametrize(
+    ("caption", "why"),
+    [("excited walk", "hops"), ("run with open arms", "flies"), ("skip happily", "hops"), ("walk on tiptoe", "toes")],
+)
+def test_what_ten_frames_a_second_do_not_hold_is_left_to_the_rules(caption: str, why: str) -> None:
+    walks = Action(Skill.LOCO, caption, Emotion.HAPPY, goal=(4.6, 1.0))
+    ((motion, _),) = acted(walks)
+    assert motion.completed
+    assert shares(motion) == {"procedural": 1.0}
+    assert all(why in phase.fallback for phase in motion.phases)
+
+
 def test_what_jumps_is_refused() -> None:
     still = Frames(*stood_for(12))
     root, local = stood_for(30)
@@ -184,3 +196,13 @@ def moved(root: Array, local: Array) -> Motion:
 
 def acted_part() -> Part:
     return Part(PartKind.HOLD, sits())
+
+
+def test_who_sits_down_jumps_nowhere_between_windows() -> None:
+    (seated, _), _ = sat()
+    phase = next(phase for phase in seated.phases if phase.kind is PhaseKind.SITDOWN)
+    assert phase.backend == "diffusion"
+    wrists = seated.joint_positions()[phase.start : phase.stop, [INDEX["left_wrist"], INDEX["right_wrist"]]]
+    changes = np.linalg.norm(np.diff(wrists.astype(np.float64), 2, axis=0), axis=-1).max(axis=1) * seated.fps
+    border = slice(LOOK - 3, LOOK + 4)
+    assert changes[border].max() < 1.0

@@ -266,7 +266,7 @@ def test_a_plan_knows_what_it_does_in_every_frame() -> None:
     )  # fmt: skip
     phases = tuple(Phase(kind, 10 * index, 10 * index + 10) for index, kind in enumerate(kinds))
     motion = replace(motion, phases=phases)
-    from_bed = [Doing.WALKS, Doing.GOES_DOWN, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.OTHER, Doing.OTHER]
+    from_bed = [Doing.WALKS, Doing.GOES_DOWN, Doing.LIES, Doing.OTHER, Doing.REACHES, Doing.LIES, Doing.OTHER]
     assert plan_of(motion).doing[::10].tolist() == from_bed
     low = replace(motion, root_positions=motion.root_positions * np.array([1, 0.2, 1], dtype=np.float32))
     from_floor = [*from_bed[:-3], Doing.GOES_DOWN, Doing.RISES, Doing.STANDS_UP]  # a low touch kneels

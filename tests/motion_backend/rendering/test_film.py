@@ -20,13 +20,13 @@ from motion_backend.formats.mp4 import write_mp4
 from motion_backend.motion import Motion, join
 from motion_backend.rendering import depth_buffer, film_kernel, surface_light
 from motion_backend.rendering.camera import SEEN
-from motion_backend.rendering.film_backdrop import Backdrop
+from motion_backend.rendering.film_backdrop import Backdrop, _lifted
 from motion_backend.rendering.film_cuts import LONGEST, SHORTEST, Framing, Subject
 from motion_backend.rendering.film_frames import compile_film, film_frames
 from motion_backend.rendering.film_loop import moment, write_loop
 from motion_backend.rendering.film_picture import lay_words, split, to_rgb
 from motion_backend.rendering.film_set import FilmSet
-from motion_backend.rendering.film_shots import FilmShot, _fitted, _from_feet, _View, film_shots
+from motion_backend.rendering.film_shots import EYES, FilmShot, _from_feet, _standing, _View, film_shots
 from motion_backend.rendering.film_sight import Appearances
 from motion_backend.rendering.motion_figures import body_solids, home_props
 from motion_backend.rendering.rasterizer import Camera, orbit
@@ -63,6 +63,14 @@ def test_the_body_is_in_the_picture_all_the_time():
         for frame in range(shot.start, shot.stop):
             x, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(joints[frame]), (160, 90)), -1, 0)
             assert ((x > 0) & (x < 160) & (y > 0) & (y < 90)).mean() > 0.9, (shot, frame)
+
+
+def test_told_words_lie_on_no_foot_and_cameras_stand_as_high_as_eyes_do():
+    joints = acted().joint_positions().astype(np.float64)
+    for shot in (one for one in shots() if one.subject is Subject.BODY):
+        assert 0.8 < shot.camera.eye[1] <= EYES[-1] + 0.01
+        _, y, _ = np.moveaxis(shot.camera.project(shot.camera.view(joints[shot.start : shot.stop]), (160, 90)), -1, 0)
+        assert y.max() <= 0.83 * 90, "two lines of words end above that"
 
 
 def test_of_two_sides_of_a_body_a_film_shows_the_one_with_the_home_and_the_body_stays_in_the_picture():
@@ -112,6 +120,14 @@ def test_a_body_put_into_a_still_picture_looks_as_if_all_had_been_drawn():
     off = np.abs(made - whole)
     assert off.mean() < 2.0
     assert (off > 40).mean() < 0.03
+
+
+def test_dark_colours_of_a_body_are_lifted_and_none_becomes_brighter_than_one_that_was_brighter():
+    grey = np.linspace(0.0, 1.0, 101)[:, None].repeat(3, axis=1)
+    lifted = _lifted(grey)[:, 0]
+    assert (np.diff(lifted) > 0).all()
+    assert lifted[5] > 1.3 * grey[5, 0]
+    assert np.abs(lifted[50:] - grey[50:, 0]).max() < 0.005
 
 
 def test_of_a_body_that_is_partly_behind_the_eye_the_rest_is_seen():
@@ -270,7 +286,7 @@ def test_a_camera_turned_aside_stands_where_it_stood_and_keeps_all_in_its_pictur
     yaw: float, wide: float, high: float
 ) -> None:
     points = np.array([[x, y, z] for x in (-wide, wide) for y in (0.0, high) for z in (-0.3, 0.3)])
-    middle = _fitted(yaw, 0.2, points, 16 / 9, 2.3)
+    middle = _standing(yaw, 1.4, points, 16 / 9, 2.3)
     for view in _View(0.0, middle, points).aside(16 / 9):
         assert view.camera.eye == middle.eye
         assert view.score < 0.0

@@ -12,8 +12,9 @@ from for_each import for_each
 from upright_body import walking
 
 from motion_backend.body.cast import Role
-from motion_backend.motion import Emotion, Motion, PhaseKind, join
+from motion_backend.motion import Emotion, Motion, PhaseKind, Skill, join
 from motion_backend.rendering.camera import visible_share
+from motion_backend.rendering.face_deed import LEAST, face_deed
 from motion_backend.rendering.film_cuts import SHORTEST, Cut, Framing, Subject, film_cuts
 from motion_backend.rendering.film_shots import NO_LONGER_NEAR, WIDEST_NEAR, FilmShot, are_alike, film_shots
 from motion_backend.rendering.film_sight import Appearances
@@ -170,3 +171,38 @@ def test_a_hand_is_seen_from_near_with_head_and_shoulders_of_whose_it_is(name: s
             who = joints[frame, [INDEX[part] for part in ("head", "left_shoulder", "right_shoulder")]]
             x, y, depth = np.moveaxis(shot.camera.project(shot.camera.view(who), (160, 90)), -1, 0)
             assert ((x > 0) & (x < 160) & (y > 0) & (y < 90) & (depth > 0)).all(), (shot.start, frame)
+
+
+WEPT = (Skill.SITDOWN, "supporting head with hands, head bowed")
+
+
+@cache
+def wept() -> tuple[FilmShot, ...]:
+    """Somebody walks to a sofa, sits down and weeps there."""
+    parts = [walked("walk").motion, sat("sofa", WEPT[1]).motion]
+    actions = np.repeat(np.arange(2, dtype=np.int32), list(map(len, parts)))
+    motion = replace(join(parts), actions=actions)
+    role = Role(captions={0: (Skill.LOCO, "walk"), 1: WEPT})
+    return tuple(film_shots(SMALL, motion, [0, len(parts[0])], ASPECT, role))
+
+
+def test_a_deed_of_the_face_is_seen_from_near_and_from_before_to_its_end() -> None:
+    last = wept()[-1]
+    assert last.subject is Subject.FACE
+    assert (last.stop - last.start) / 30 >= LEAST
+    turn = join([walked("walk").motion, sat("sofa", WEPT[1]).motion]).local_rotations[last.stop - 1, 0]
+    ahead = rotate(turn.astype(np.float64), np.array([0.0, 0.0, 1.0]))
+    assert -last.camera.axes[2][[0, 2]] @ ahead[[0, 2]] > 0.2 * np.linalg.norm(ahead[[0, 2]])
+
+
+def test_nothing_else_is_seen_from_near_right_before_a_deed_of_the_face() -> None:
+    before = wept()[-2]
+    assert before.subject is Subject.BODY
+    assert (before.stop - before.start) / 30 >= SHORTEST
+
+
+def test_who_walks_does_no_deed_of_the_face() -> None:
+    motion = walked("walk").motion
+    joints = motion.joint_positions().astype(np.float64)
+    role = Role(captions={0: (Skill.LOCO, "sighing deeply")})
+    assert face_deed(motion, joints, role, 0, len(motion), 48) is None

@@ -25,7 +25,7 @@ def homes() -> tuple[tuple[Home, tuple[float, float, float]], ...]:
     rooms = [layout for layout in built_in_layouts() if layout.room_type == "living_room"][:3]
     made = [home_from_layouts([room], seed=0) for room in rooms]
     found = [(home, entry(home, scene_of(home).walkable, 0)) for home in made]
-    return tuple((home, at) for home, at in found if at is not None)
+    return tuple((home, (*at.standing, at.inward)) for home, at in found if at is not None)
 
 
 @pytest.mark.parametrize("metres", [0.0, 1.0])

@@ -18,7 +18,7 @@ from planner_service.llm.fake_model import ScriptedModel
 from planner_service.llm.protocol import ModelError
 from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.built_in_scripts import built_in
-from planner_service.scripts.script import Keyframe, LongScript
+from planner_service.scripts.script import REACTED, Keyframe, LongScript
 from planner_service.scripts.script_library import Features, ScriptLibrary
 from planner_service.scripts.script_repair import check
 from planner_service.themes.beats import ThemeError
@@ -68,7 +68,7 @@ def test_every_method_plans_a_script_that_can_be_acted_and_counts_its_beats(meth
     assert served <= set(range(len(script.beats)))
     shown = [beat for beat in script.beats if beat.kind != "undone" and not beat.why]
     assert script.acted == sum(not beat.stood_for for beat in shown)
-    assert script.asked == sum(beat.kind != "undone" for beat in script.beats)
+    assert script.asked == sum(beat.kind != "undone" and not beat.why.startswith(REACTED) for beat in script.beats)
     assert script.acted == planned_beats(script).acted
     assert shown
 
@@ -100,6 +100,19 @@ def test_a_theme_of_which_nothing_can_be_acted_is_refused_by_its_words(theme: st
     with pytest.raises(ThemeError, match=r"Try for example: A person") as error:
         planned(theme)
     assert theme.rstrip(".").split()[-1] in str(error.value)
+
+
+@for_each("theme", ["Autumn. Leaves. Wind. Nothing.", "Snow, fog, yellow, music, the sea."])
+def test_words_that_tell_of_nobody_and_of_hardly_a_deed_are_refused(theme: str) -> None:
+    with pytest.raises(ThemeError, match="it tells of nobody"):
+        planned(theme)
+
+
+@for_each(
+    "theme", ["Exhausted. Bed. Lights out.", "Quick lunch, then a nap.", "a very very tired man", "Do ten push-ups."]
+)
+def test_a_note_of_few_words_is_a_theme(theme: str) -> None:
+    assert planned(theme).keyframes
 
 
 @for_each("theme", ["He does not sit down.", "She never lies down.", "Anna is not sitting."])
@@ -171,3 +184,18 @@ def test_direct_generation_by_a_model_is_repaired_until_it_can_be_acted() -> Non
     script = compose(THEME, hashing(), Request(method="direct"), ScriptedModel([{"keyframes": [sits, walks]}]))
     assert [str(keyframe.skill) for keyframe in script.keyframes] == ["loco", "sitdown", "standup", "loco"]
     assert (script.method, script.planner, len(script.repairs)) == ("direct", "llm:scripted", 2)
+
+
+def test_an_animal_that_is_called_it_is_not_seen() -> None:
+    beats = {beat.text: beat.unshown for beat in planned("The cat jumps on the table, so she picks it up.").beats}
+    assert beats["picks it up"][:1] in (("it",), ("picks it up",))
+
+
+@for_each(("theme", "asked"), [("The rain falls. She sweeps.", 1), ("She wants to sleep, but she sweeps.", 1)])
+def test_what_happens_or_is_wished_for_is_not_counted_among_what_is_to_be_acted(theme: str, asked: int) -> None:
+    assert planned(theme).asked == asked
+
+
+def test_it_is_said_who_is_played_where_others_do_something() -> None:
+    told = {beat.text: beat.why for beat in planned("Ben sweeps the floor. Anna sits at the table.").beats}
+    assert told["Anna sits at the table"] == "Anna does it: only Ben is played"

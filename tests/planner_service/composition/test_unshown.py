@@ -23,6 +23,10 @@ READING = keyframe(Skill.SITDOWN, "reading, book held in both hands", "armchair"
 LOW = keyframe(Skill.TOUCH, "touch low height", "bed")
 WALKING = keyframe(Skill.LOCO, "steadily walking forward", "floor")
 SWEEPING = keyframe(Skill.LOCO, "sweeping the floor with both hands", "floor")
+KNEELING = keyframe(Skill.LOCO, "kneeling on the floor, hands on thighs", "wardrobe")
+DRESSING = keyframe(Skill.LOCO, "dressing, both hands at the chest", "floor")
+SITTING = keyframe(Skill.SITDOWN, "sit upright with hands on thighs", "armchair")
+DRINKING = keyframe(Skill.SITDOWN, "drinking at the table, right hand to the mouth", "armchair")
 CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
 
 
@@ -56,6 +60,13 @@ CARRYING = keyframe(Skill.LOCO, "carrying with both hands", "floor")
         ("She reads next to the bed.", READING, ("next to the bed",)),
         ("He writes by the desk.", WRITING, ()),
         ("She yells at her brother.", WALKING, ("at her brother",)),
+        ("She pulls them off the bookcase, the wardrobe, his armchair.", HAND, ("off the bookcase", "his armchair")),
+        ("He opens the drawer of the desk.", HAND, ("of the desk",)),
+        ("He scrubs the bathtub on his knees.", HAND, ("the bathtub", "on his knees")),
+        ("He scrubs the wardrobe on his knees.", KNEELING, ()),
+        ("She ties on an apron.", DRESSING, ("an apron",)),
+        ("He opens a beer.", SITTING, ("a beer",)),
+        ("He opens a beer.", DRINKING, ()),
     ],
 )
 def test_what_no_keyframe_shows_of_an_acted_beat_is_said(

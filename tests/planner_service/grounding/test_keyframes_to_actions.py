@@ -17,10 +17,10 @@ from planner_service.grounding.keyframes_to_actions import (
     UnreachableError,
     act,
     can_stand,
-    heading_after,
     height_of,
     stays,
 )
+from planner_service.grounding.walk_direction import heading_after
 from planner_service.scripts.script import Keyframe
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.furniture import catalogue

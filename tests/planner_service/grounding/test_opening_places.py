@@ -172,16 +172,24 @@ def test_who_comes_in_is_told_from_who_is_there(said: str, comes: bool) -> None:
     assert comes_in(said) == comes
 
 
-def test_who_comes_in_begins_at_the_door_and_looks_into_the_room() -> None:
+def test_who_comes_in_begins_outside_the_door_looks_into_the_room_and_walks_in() -> None:
     rows = (("loco", "excited walk", "floor"), TURN)
     walk, _ = grounded(*rows, said=("comes home", "tidies"), home=DOOR)
     assert walk.begins is not None
-    assert walk.begins == entry(DOOR, scene_of(DOOR).walkable, 0)
+    inside = entry(DOOR, scene_of(DOOR).walkable, 0)
+    assert inside is not None
+    assert walk.begins[2] == inside.inward
+    assert walk.begins[1] < -0.2, "the door is at z = 0"
+    stands, _ = grounded(("loco", "stand still", "floor"), TURN, said=("comes home", "tidies"), home=DOOR)
+    assert stands.begins is not None
+    assert stands.begins[:2] == inside.standing, "who only stands there does so inside"
     director = Director.of("procedural")
     state = director.begin(DOOR, Character(), 0, walk)
     x, _, z = state.pelvis
     assert np.hypot(x - walk.begins[0], z - walk.begins[1]) < 0.1
-    assert z < 1.5, "the door is at z = 0"
+    motion = director.act(DOOR, walk, state)[0]
+    assert motion.completed, motion.reason
+    assert motion.root_positions[-1, 2] > 0.3
     assert grounded(*rows, said=("paces", "tidies"), home=DOOR)[0].begins is None
     assert grounded(*rows, said=("comes home", "tidies"), home=BLIND)[0].begins is None, "no door"
 

@@ -39,7 +39,7 @@ from planner_service.narration.tense import bases, form_of, in_past
 from planner_service.narration.told import Told
 from planner_service.scripts.acted_beats import planned_beats
 from planner_service.scripts.captions import captions
-from planner_service.scripts.script import BeatKind, Keyframe, LongScript, PlannedKeyframe
+from planner_service.scripts.script import WISHED, BeatKind, Keyframe, LongScript, PlannedKeyframe
 from planner_service.themes.beats import beats_of
 from planner_service.themes.lexicon import gerund, past, third_person
 from planner_service.themes.prose import prose_of
@@ -277,7 +277,6 @@ def test_what_the_body_is_not_seen_doing_is_a_thought_and_no_event(
 @for_each(
     ("script", "thoughts"),
     [
-        (NEGATION, ["did not sit down"]),
         (MEMORY, ["missing the bus", "had lost her umbrella too"]),
         (OTHERS, ["The phone rang", "her husband came in with flowers", "the guests left"]),
     ],
@@ -290,6 +289,21 @@ def test_memories_refusals_and_what_others_do_keep_their_places_as_thoughts(
     for words in thoughts:
         assert any(words in one for one in found), (told.text, found)
         assert words not in told.events
+
+
+def test_what_is_left_undone_as_asked_is_seen_not_to_be_done_and_what_is_only_wished_for_is_a_thought() -> None:
+    assert "did not sit down" in narrate(NEGATION, JAMES).events
+    wish = beat("wants to call", "undone", WISHED)
+    told = narrate(
+        made("He wants to call. He walks.", [wish, beat("walks")], [frame("loco", "stand still", "floor", 1)]), JAMES
+    )
+    assert "call" not in told.events
+
+
+def test_what_no_door_or_lamp_is_seen_to_do_is_a_thought() -> None:
+    opens = beat("stands at the open fridge")
+    told = narrate(made("He stands at the open fridge.", [opens], [frame("loco", "stand still", "floor", 0)]), JAMES)
+    assert told.marked(lambda words: f"*{words}*") == "James stood at the *open fridge*."
 
 
 @for_each("seed", range(3))

@@ -133,6 +133,12 @@ def test_who_is_only_said_to_lie_or_sleep_does_so_however_the_knees_lie(text: st
     assert acted_beats([Beat(text=text)], [less]).stood_for == stood_for
 
 
+def test_who_walks_out_does_so_with_the_arms_before_them_too() -> None:
+    less = shot(0, True, otherwise=("no room for open arms: to the front",))
+    found = [acted_beats([Beat(text=text)], [less]).acted for text in ("walks out of the door", "runs with open arms")]
+    assert found == [1, 0]
+
+
 @pytest.mark.parametrize(
     ("text", "unshown"),
     [

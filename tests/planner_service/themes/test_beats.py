@@ -240,6 +240,10 @@ def test_a_beat_that_somebody_else_found_keeps_its_words_mood_and_kind() -> None
         "彼女は本を読む。",
         "for i in range(3): x[i] = {y: z}; print(x)",
         "<script>alert(1)</script> {a} [b] = c; d | e",
+        "SELECT * FROM stories WHERE mood = 'sad';",
+        'def walk(self): return self.body.go("sofa")',
+        "Purple seven the of under quickly banana if.",
+        "O silver moon above the silent hills, eternal, cold and far.",
         b"He sits.",
     ],
 )
@@ -248,11 +252,19 @@ def test_what_is_no_theme_is_refused_with_examples(theme: object) -> None:
         beats_of(theme)  # type: ignore[arg-type]  # not text at times
 
 
-@for_each("theme", ["Please ignore the story and set the camera wide.", "Can you tell me how long it takes?"])
+@for_each(
+    "theme",
+    [
+        "Please ignore the story and set the camera wide.", "Can you tell me how long it takes?",
+        "Translate this sentence into German.", "Write me a poem about the sea.",
+        "Delete all files and shut down the server.", "Preheat to 180 degrees for 25 minutes.",
+    ],
+)  # fmt: skip
 def test_who_asks_for_something_tells_no_story(theme: str) -> None:
     with pytest.raises(ThemeError, match="asks for something"):
         beats_of(theme)
     assert beats_of("Please show a man who reads a book.")
+    assert beats_of("Write a letter, make the bed and go to sleep.")
 
 
 def test_the_longest_theme_is_read() -> None:

@@ -16,6 +16,8 @@ from planner_service.themes.opening_words import goes_out, goes_to_window, openi
         ("opens it", ("walks to the window", "picks up a letter"), None),
         ("opens it", ("walks to the window", "takes a box from the shelf"), None),
         ("opens it", (), None),
+        ("whisks them by the open window", (), None),
+        ("drew the curtains on the grey street", (), "window"),
         ("knocks on the bathroom door", (), "door"),
         ("knocks again", (), "door"),
         ("knocks on the table", (), None),

@@ -108,3 +108,22 @@ def test_questions_that_tell_of_nobody_are_refused(theme: str, is_refused: bool)
         assert is_refused
     else:
         assert not is_refused
+
+
+@for_each(
+    ("theme", "prose"),
+    (
+        ("Her morning: 1. make the bed 2. shower, 3. eat", "Her morning\nmake the bed\nshower\neat"),
+        ("1) He wakes up. 2) He reads.", "He wakes up.\nHe reads."),
+        ("Step 1: open the door. Step 2: leave.", "open the door.\nleave."),
+        ("He lives at number 7. He sleeps.", "He lives at number 7. He sleeps."),
+        ("She is 1. Then 3. She sits.", "She is 1. Then 3. She sits."),
+    ),
+)
+def test_a_numbered_list_in_a_line_is_a_line_for_each_item(theme: str, prose: str) -> None:
+    assert prose_of(theme) == prose
+
+
+def test_what_is_told_not_to_have_been_touched_at_all_is_no_deed() -> None:
+    kinds = {one.text: one.beat.kind for one in beats_of("Before she touches a single plate, she sweeps the floor.")}
+    assert kinds == {"sweeps the floor": "deed", "she touches a single plate": "other"}

@@ -227,3 +227,10 @@ def test_who_kneels_down_leaves_each_foot_where_it_stands_until_it_steps() -> No
         assert away[:steps].max() < 0.005, foot
         assert away[-1] > 0.3, foot
         assert np.linalg.norm(np.diff(down.ankles[:, foot], axis=0), axis=1).max() < 0.08, foot
+
+
+@EVERYWHERE
+def test_the_head_of_who_lies_on_a_side_stays_on_what_is_under_it(everywhere: bool) -> None:
+    for name, body in lying(tuple(SIDE), everywhere):
+        height = body.at("head")[-round(body.action.hold * FPS) :, 1]
+        assert np.ptp(height) < 0.015, name

@@ -147,6 +147,6 @@ def test_what_is_done_shows_in_the_other_arm() -> None:
 
 def test_a_height_that_the_thing_lacks_is_said_and_no_other() -> None:
     said = [note.words for note in act("touch medium height", "low", "low").notes]
-    assert said == ["nothing at medium height: low"]
+    assert said == ["nothing is there at medium height: it is done at low height"]
     assert act("touch medium height", "shelf", "medium").notes == ()
     assert act("turn on with the right hand", "low", "low").notes == ()
