@@ -294,7 +294,7 @@ def test_who_does_it_lasts_to_the_end_of_the_sentence_but_not_who_does_it_meanwh
         ("She unwraps it: a birthday cake.", ["unwraps it, a birthday cake"]),
         ("She waits until he cries.", ["waits", "cries"]),
         ("wake up, yawn, shower, get dressed, leave", ["wake up", "yawn", "shower", "get dressed", "leave"]),
-        ("1) she sets the table 2) waits 3) eats", ["sets the table", "Waits", "Eats"]),
+        ("1) she sets the table 2) waits 3) eats", ["sets the table", "waits", "eats"]),
         ("My roommate and I watch a film.", ["watch a film"]),
         ("Mum and Dad came home, and argued.", ["came home", "argued"]),
         ("Wake up, stretch, make the bed.", ["Wake up", "stretch", "make the bed"]),
