@@ -176,8 +176,9 @@ def _with_reasons(
             continue
         known = index in shown or (index in writer.moody and one.beat.emotion in moods)
         why = "" if known else writer.why.get(index, UNSHOWN)
-        kind = "feeling" if index in writer.moody else one.beat.kind
-        besides = _besides(index, with_its_noun(index, read), writer, keyframes) if known else ()
+        meant = with_its_noun(index, read)
+        kind = "feeling" if index in writer.moody else meant[0].beat.kind
+        besides = _besides(index, meant, writer, keyframes) if known else ()
         beats.append(one.beat.model_copy(update={"why": why, "kind": kind, "unshown": besides}))
     return tuple(beats)
 

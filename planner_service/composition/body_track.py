@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 
-from motion_backend.motion import Emotion, Skill
+from motion_backend.motion import RISINGS, Emotion, Skill
 from planner_service.composition.deed_lexicon import Deed
 from planner_service.composition.deed_table import deed_table
 from planner_service.composition.phone_call import HANGING_UP, is_talk
@@ -39,7 +39,9 @@ class BodyTrack:
     @property
     def calling(self) -> PlannedKeyframe | None:
         """What it does with a phone at its ear; None where it has none, or has hung up."""
-        last = self.keyframes[-1] if self.keyframes and self.hung_up != len(self.keyframes) else None
+        if self.hung_up == len(self.keyframes):
+            return None
+        last = next((one for one in reversed(self.keyframes) if one.skill not in RISINGS), None)  # who gets up talks on
         return last if last is not None and is_talk(last.caption) else None
 
     def copy(self) -> BodyTrack:

@@ -16,17 +16,20 @@ from planner_service.themes.beats import ReadBeat
 from planner_service.themes.clause import Clause
 from planner_service.themes.lexicon import lemma_of
 from planner_service.themes.opening_words import meant_by_it
-from planner_service.themes.things import things
+from planner_service.themes.things import things, things_called
 
 _REMEMBERED: Final = 6
 """Beats back to which "it" reaches."""
 _RINGS: Final = re.compile(r"\b(?:phone|telephone|mobile|rings?|rang|ringing)\b")
 _CALLS: Final = ("call", "phone")
 _ANSWERS: Final = re.compile(
-    r"(?:finally |then )?(?:picks?|picked) (?:(?:it|the phone|the receiver) )?up"
-    r"(?: (?:after all|at last|again|finally|anyway))?"
+    r"(?:finally |then )?(?:(?:picks?|picked) (?:(?:it|the phone|the receiver) )?up|answers?|answered|takes? it|took it"
+    r"|(?:gets?|got) (?:to )?it)(?: (?:after all|at last|again|finally|anyway|in time|it|(?:on|at) the \w+ ring))?"
 )
 """Of a phone that was told of."""
+_COOKED: Final = frozenset(
+    (*things_called("food"), *things_called("drink"), "pot", "pan", "bowl", "saucepan", "ingredient")
+)
 _LETTERS: Final = frozenset(("letter", "note", "card", "postcard", "telegram", "bill", "list", "invitation"))
 _READ: Final = _LETTERS | {"book", "novel", "newspaper", "magazine", "diary", "text", "message", "email", "comic"}
 _READS_IT: Final = re.compile(r"(?:re)?reads? it\b")
@@ -42,8 +45,11 @@ def with_its_noun(index: int, beats: Sequence[ReadBeat]) -> tuple[ReadBeat, Sequ
     that was named before."""
     read, before = beats[index], beats[max(index - _REMEMBERED, 0) : index]
     clause = read.clause
-    if _ANSWERS.fullmatch(read.text) and _has_rung(before):
-        clause = replace(clause, lemmas=("answer", "the", "phone"))
+    if read.beat.kind in ("deed", "speech") and _ANSWERS.fullmatch(read.text) and _has_rung(before):
+        clause = replace(clause, verb="answer", lemmas=("answer", "the", "phone"))
+        read = replace(read, beat=read.beat.model_copy(update={"kind": "deed"}))
+    elif clause.lemmas == ("stir",) and any(not _COOKED.isdisjoint(one.clause.lemmas) for one in before):
+        clause = replace(clause, verb="stir", lemmas=("stir", "the", "pot"))
     elif letter := _letter_meant(read, before):
         clause = replace(clause, lemmas=(clause.verb, "the", letter, *clause.lemmas[2:]))
     elif photograph := _photograph_meant(read, before):

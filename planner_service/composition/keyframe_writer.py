@@ -138,9 +138,8 @@ class KeyframeWriter:
 
     def write(self, index: int, beats: Sequence[ReadBeat]) -> None:
         """Keyframes for the beat at a place; it is shown by one, by another beat's in its mood, or is in `why`."""
-        read = beats[index]
-        beat = read.beat
         read, beats = with_its_noun(index, beats)
+        beat = read.beat
         deed = self._deed(index, beats) if beat.kind == "deed" else None
         self._about = read.text if names_things(read.clause) else self._about
         nexts = beats[index + 1 :]
@@ -480,7 +479,9 @@ class KeyframeWriter:
         last = self.keyframes[-1] if self.keyframes else None
         if last is not None and last.mood is mood:
             self.body.show(index)
-        elif self.body.sleeps or self.body.calling:  # nobody wakes for a mood, nor hangs up
+        elif self.body.sleeps or (
+            last is not None and self.body.calling is last
+        ):  # nobody wakes for a mood, nor hangs up
             self.body.go_on(index, mood)
         elif last is not None and self.body.resting is not None and self.body.plain:
             caption = self._one_of(captions_of(last.skill, mood), mood, index, last.skill)

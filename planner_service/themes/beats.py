@@ -275,6 +275,8 @@ def is_feeling(clause: Clause) -> bool:
     rest = [word for word in clause.lemmas[1:] if word not in words["state_words"]]
     if head_of(clause.subject).lower() in words["body"]:  # "her heart is in her mouth"
         return bool(feelings(f"{clause.subject} {clause.text}"))
+    if clause.verb == "turn" and any(one in things() or is_known(one) for one in rest):  # "turns down the lamp"
+        return False
     return clause.verb in words["state_verbs"] and bool(feelings(clause.text)) and len(rest) <= 4
 
 

@@ -308,7 +308,7 @@ def _noted(clause: Clause) -> list[Clause]:
 def _wants_article(verb: str, before: str, word: str, after: str) -> bool:
     """Whether a noun that stands after a verb, its particle or a preposition is one thing, and has no article."""
     known = grammar()
-    if verb in theme_words()["state_verbs"] | {"be"} or word in ("tv", "television"):
+    if verb in theme_words()["people"] | {"be", "become", "seem", "people"} or lemma_of(word) in _words("bare"):
         return False
     one = word in kinds_of(word).get("NOUN", ()) or verb == "do"
     thing = is_known(word) or word in things() or word in theme_words()["body"] | _words("sole")
@@ -317,7 +317,7 @@ def _wants_article(verb: str, before: str, word: str, after: str) -> bool:
     in_bed = word == "bed" and before in ("to", "in", "from", "of", "into")
     limb = word in theme_words()["body"] and before in known.prepositions
     noun_follows = is_noun(after) and (is_known(after) or after in things())
-    return one and thing and led and not (eaten or in_bed or limb or noun_follows)
+    return one and thing and led and word not in _ON and not (eaten or in_bed or limb or noun_follows)
 
 
 def _received(clause: Clause) -> list[Clause]:

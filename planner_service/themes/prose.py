@@ -19,6 +19,7 @@ from planner_service.themes.lexicon import (
     verb_of,
 )
 from planner_service.themes.outline import lines_of
+from planner_service.themes.spell_check import spelt
 from planner_service.themes.theme_words import theme_words
 from planner_service.themes.verb_finder import names
 
@@ -114,7 +115,7 @@ def prose_of(theme: str) -> str:
     text = _TWICE.sub(_once, text)
     text = _POSED.sub(_posed, _ME.sub(lambda one: f"{one['when'] or ''}I am {one['doing']}", text))
     text = _STATE.sub(lambda one: f"{one[1]} is " if is_adjective(one[2].lower()) else one[0], text)
-    return _SHORT.sub(_written_out, text).strip() or theme
+    return spelt(_SHORT.sub(_written_out, text)).strip() or theme
 
 
 def _slug(one: re.Match[str]) -> str:

@@ -46,6 +46,8 @@ _IDLE: Final = frozenset(
     ("do", "be", "have", "lose", "waste", "take", "make", "pay", "give", "get", "leave", "find", "see", "hear")
 )
 """Verbs that with "nothing" or "no" tell of a deed all the same: "does nothing", "loses no time"."""
+_LYING_AT: Final = frozenset(("on", "in", "there", "under", "beside", "next", "by", "across"))
+"""Where somebody lies, who is said to lay."""
 _FEWEST_DENYING: Final = 2
 _PARTICLES: Final = frozenset(("on", "off", "down", "up", "around", "there", "back"))
 _BULLET: Final = re.compile(
@@ -497,6 +499,9 @@ def _lemmas(tokens: Sequence[Token]) -> tuple[str, ...]:
     found = [lemma_of(token.text) for token in tokens if token.text[:1].isalnum()]
     if len(tokens) > 1 and tokens[0].low == "lay" and tokens[1].low in grammar().marks | grammar().numbers:
         found[0] = "lay"  # "I lay the table"
+    at = 1 + ([token.low for token in tokens[1:2]] in (["down"], ["back"]))
+    if found[:1] == ["lay"] and (tokens[at].low in _LYING_AT if len(tokens) > at else at > 1):  # "he lays on the sofa"
+        found[0] = "lie"
     return tuple(found)
 
 

@@ -14,6 +14,7 @@ from planner_service.themes.lexicon import (
     is_third_person,
     kinds_of,
     lemma_of,
+    participle,
     past,
     verb_of,
 )
@@ -21,6 +22,7 @@ from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from planner_service.themes.verb_finder import Token, is_adverb, names, plain, tokens_of, two_people, verb_place
 from planner_service.themes.word_order import in_usual_order
+from scene_graphs.furniture import is_known
 
 HEROES: Final = frozenset(("he", "she", "they", "i", "we"))
 _PLAIN_SUBJECTS: Final = frozenset(("i", "you", "we", "they"))
@@ -204,7 +206,7 @@ def _whole(pieces: list[Piece]) -> list[Piece]:
     ):
         return pieces  # "stretch, shower, news"
     if _is_list(pieces):
-        return [replace(one, bare=_orders(one), verbless=not _orders(one)) for one in pieces]
+        return [replace(one, bare=_orders(one), verbless=not (_orders(one) or _is_thing_done(one))) for one in pieces]
     whole: list[Piece] = []
     waiting: Piece | None = None
     for place, piece in enumerate(pieces):
@@ -234,13 +236,32 @@ def _is_list(pieces: Sequence[Piece]) -> bool:
     """Whether pieces are short notes of what is done: "wake up, yawn, get dressed, coffee, leave"."""
     joined = all(piece.joint in ("", ",", "and", "then") and len(piece.tokens) <= _MOST_OF_NOTE for piece in pieces)
     nobody = all(grammar().subjects.isdisjoint(token.low for token in piece.tokens) for piece in pieces)
-    return len(pieces) > _FEWEST_NOTES and joined and nobody and 2 * sum(map(_orders, pieces)) > len(pieces)
+    told = 2 * sum(map(_orders, pieces)) > len(pieces) or not any(map(_acts, pieces))
+    return len(pieces) > _FEWEST_NOTES and joined and nobody and told
+
+
+def _acts(piece: Piece) -> bool:
+    """Whether a piece has a verb that is no noun, nor what is done: "reads", not "lights off" and "hair dried"."""
+    place = verb_place(piece.tokens)
+    return place is not None and not (_is_done(piece) or is_noun(piece.tokens[place].low))
+
+
+def _is_done(piece: Piece) -> bool:
+    """Whether a piece tells of a thing as of what has been done to it: "hair dried"."""
+    *things_, last = (token.low for token in piece.tokens)
+    return bool(things_) and is_noun(things_[-1]) and last not in things() and participle(verb_of(last) or "be") == last
 
 
 def _orders(piece: Piece) -> bool:
     """Whether a piece begins with a verb in its base form."""
     first = piece.tokens[0]
-    return verb_of(first.low) == first.low and not (first.low in things() or is_adverb(first.low))
+    alone = len(piece.tokens) == 1 and is_known(first.low)  # "bed"
+    return verb_of(first.low) == first.low and not (alone or first.low in things() or is_adverb(first.low))
+
+
+def _is_thing_done(piece: Piece) -> bool:
+    """The same of a thing, and no part of the body: "teeth brushed"."""
+    return _is_done(piece) and lemma_of(piece.tokens[-2].low) not in theme_words()["body"]
 
 
 def _without_relatives(pieces: list[Piece]) -> list[Piece]:

@@ -375,3 +375,14 @@ def test_nouns_and_purposes_are_no_deeds_of_their_own(text: str, clauses: list[s
 )
 def test_sentences_are_in_the_order_of_time_where_that_is_plain(text: str, verbs: list[str]) -> None:
     assert [one.verb for one in clauses_of_text(text)] == verbs
+
+
+def test_notes_without_verbs_are_a_deed_each() -> None:
+    notes = "quick shower, then pajamas on, teeth brushed, lights off, bed"
+    assert [clause.text for clause in clauses_of_text(notes)] == [
+        "quick shower", "pajamas on", "teeth brushed", "lights off", "bed"
+    ]  # fmt: skip
+
+
+def test_what_a_teller_says_of_telling_is_no_deed() -> None:
+    assert [clause.text for clause in clauses_of_text("I do not mind saying that I wept.")] == ["wept"]
