@@ -46,6 +46,8 @@ class DeedRow:
     """Of a gesture: whether it is only done where nothing else is done meanwhile: not "sweeps, singing"."""
     holds: str = ""
     """The tool in the hand for it, where the clause names none."""
+    then: str = ""
+    """The caption of what is done on the spot as soon as hands have done it: "puts on music" and nods."""
 
 
 @table
@@ -67,6 +69,7 @@ class DeedTable:
         for row in (*self.deed, *self.gesture):
             for skill, some in ((row.skill, row.captions), (Skill.LIEDOWN, row.lying), (Skill.SITDOWN, row.seated)):
                 require_known(f"deed {row.says[0]!r}", some, known.get(skill.value, ()))
+            require_known(f"deed {row.says[0]!r}: then", (row.then,) if row.then else (), known[Skill.LOCO.value])
             if row.mood:
                 require_known(f"deed {row.says[0]!r}: mood", (row.mood,), [mood.value for mood in EMOTIONS])
             for word in row.at:

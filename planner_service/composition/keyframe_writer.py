@@ -291,6 +291,8 @@ class KeyframeWriter:
                 for piece in (deed, *further(read.clause, deed)):
                     if self._add(index, read, piece, mood, Skill.TOUCH, deed.row.captions or TOUCHES):
                         self.body.resting = None
+                        if deed.row.then:
+                            self.body.put(index, Skill.LOCO, mood, deed.row.then, "floor", self.keyframes[-1].room)
             case Skill.LIEDOWN if not deed.named and (seated := dozing(self.body.resting, read, self.reader)):
                 self._rest(index, read, replace(deed, pieces=()), mood, Skill.SITDOWN, seated)
             case Skill.SITDOWN if self.body.resting is not None and lies(self.body.resting) and sits_up(read, deed):

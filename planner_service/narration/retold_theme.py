@@ -231,7 +231,8 @@ def _past(near: Sequence[str], word: str, head: bool, plain: bool) -> str | None
     if form == "present":
         joined = before in ("and", "or", "then") and follows in story_words().after_verbs.split()
         tears = word == "tears" and follows in _TORN  # no tears of somebody who weeps
-        led = before in grammar().marks | grammar().prepositions or is_adjective(before)
+        counted = before in grammar().numbers and earlier != "of"  # "twenty crunches", not "a girl of six runs"
+        led = before in grammar().marks | grammar().prepositions or is_adjective(before) or counted
         sure = not led and (follows in _TAKEN or (not is_noun(word) and "VERB" in kinds_of(word)))
         finite = before in SUBJECTS or sure or ((head or joined) and not _is_noun(word, before))
         return in_past(word) if finite or tears else None

@@ -98,6 +98,16 @@ _POSED: Final = re.compile(
 """Somebody and how they are, as screenplays tell it: "Leo | asleep on the couch"."""
 _ME: Final = re.compile(r"^me (?P<when>(?:at|on|in|after|every) [^,]*? )?(?P<doing>\w+ing)\b", re.IGNORECASE)
 """What somebody says of themself: "me at 3am eating cheese"."""
+_EXERCISE_OF_TWO: Final = re.compile(r"\b(?:(?:push|press|sit|pull|chin) ups?|star jumps?)\b")
+"""Exercises that others write as one word: "push ups" are push-ups."""
+_EXERCISE: Final = (
+    r"(?:[\w-]+ ){0,3}?(?:(?:push|press|sit|pull|chin)-?ups?|squats?|crunches|lunges|planks?|burpees|stretches"
+    r"|star[ -]jumps|jumping[ -]jacks|knee[ -]bends)\b"
+)
+_EXERCISES: Final = re.compile(
+    rf"\b(?P<does>do|does|did|doing|done) (?P<all>{_EXERCISE}(?:(?:,|,? and) {_EXERCISE})+)", re.IGNORECASE
+)
+"""Several exercises that one verb has: "does ten push-ups, sit-ups and squats"."""
 _TEXTED: Final = {"u": "you", "ur": "your", "im": "I am", "ive": "I have"}
 
 
@@ -114,8 +124,14 @@ def prose_of(theme: str) -> str:
     text = re.sub(r"\b(?:u|ur|im|ive)\b", lambda one: _TEXTED[one[0]], text)
     text = _TWICE.sub(_once, text)
     text = _POSED.sub(_posed, _ME.sub(lambda one: f"{one['when'] or ''}I am {one['doing']}", text))
+    text = _EXERCISES.sub(_one_by_one, _EXERCISE_OF_TWO.sub(lambda one: one[0].replace(" ", "-"), text))
     text = _STATE.sub(lambda one: f"{one[1]} is " if is_adjective(one[2].lower()) else one[0], text)
     return spelt(_SHORT.sub(_written_out, text)).strip() or theme
+
+
+def _one_by_one(one: re.Match[str]) -> str:
+    """Every exercise with the verb of them all: "does push-ups, does squats"."""
+    return re.sub(rf"(^|, and |, | and )(?={_EXERCISE})", lambda joint: f"{joint[1]}{one['does']} ", one["all"])
 
 
 def _slug(one: re.Match[str]) -> str:

@@ -338,6 +338,12 @@ def test_who_eats_before_the_television_sits_on_the_sofa() -> None:
     assert [one.furniture for one in own(planned("She eats it in front of the television."))] == ["sofa"]
 
 
+def test_who_puts_on_music_nods_to_it_before_anything_else_is_done() -> None:
+    for theme in ("He puts on some music and sits down on the sofa.", "She turns on the radio and dances."):
+        assert [one.caption for one in own(planned(theme))][:2] == ["turn on with the right hand", "nodding the head"]
+    assert "nodding the head" not in [one.caption for one in own(planned("She turns on the lamp and sits down."))]
+
+
 def test_one_leg_is_no_bed_that_was_named_before() -> None:
     assert own(planned("She looks under the bed. She hops on one leg."))[-1].furniture == "floor"
 

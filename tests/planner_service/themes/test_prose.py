@@ -124,6 +124,22 @@ def test_a_numbered_list_in_a_line_is_a_line_for_each_item(theme: str, prose: st
     assert prose_of(theme) == prose
 
 
+@for_each(
+    ("theme", "prose"),
+    (
+        ("He did push ups, sit ups and squats.", "He did push-ups, did sit-ups and did squats."),
+        (
+            "She does twenty jumping jacks and a plank, then rests.",
+            "She does twenty jumping jacks and does a plank, then rests.",
+        ),
+        ("He did star jumps and drank water.", "He did star-jumps and drank water."),
+        ("After doing squats, he sits up and stretches.", "After doing squats, he sits up and stretches."),
+    ),
+)
+def test_every_exercise_of_a_list_has_its_verb(theme: str, prose: str) -> None:
+    assert prose_of(theme) == prose
+
+
 def test_what_is_told_not_to_have_been_touched_at_all_is_no_deed() -> None:
     kinds = {one.text: one.beat.kind for one in beats_of("Before she touches a single plate, she sweeps the floor.")}
     assert kinds == {"sweeps the floor": "deed", "she touches a single plate": "other"}
