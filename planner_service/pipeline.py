@@ -46,7 +46,10 @@ Progress = Callable[[str, float], None]
 """Called with a stage's name and the share of it that is done, 0 to 1."""
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
 PRONOUNS = get_args(Pronouns)
-_ASLEEP: Final = re.compile(r"\b(?:asleep|sleeps?|sleeping|naps?|napping|dozes?|dozing|slumbers?)\b", re.IGNORECASE)
+_ASLEEP: Final = re.compile(
+    r"\b(?:asleep|sleeps?|sleeping|naps?|napping|dozes?|dozing|slumbers?|(?:closes?|shuts?) (?:his|her|their|my) eyes)\b",
+    re.IGNORECASE,
+)
 """Words of what is acted, seated or lying, with closed eyes."""
 MAX_SEED = 2**53 - 1
 """The largest whole number that every JSON reader keeps exactly."""

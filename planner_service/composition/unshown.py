@@ -65,6 +65,12 @@ _OFTEN: Final = re.compile(
     re.IGNORECASE,
 )
 """How often, of what is seen once."""
+_EXERCISED: Final = re.compile(
+    r"\b(?:\d+|five|six|seven|eight|nine|ten|twelve|fifteen|twenty|thirty|forty|fifty|a hundred|hundreds of)"
+    r"(?= (?:\w+[ -])?(?:(?:push|sit|press|pull)-?ups?|squats?|jacks|crunches|jumps|laps|reps)\b)",
+    re.IGNORECASE,
+)
+"""More of them than are seen."""
 _EACH: Final = re.compile(
     r"\b(?:each|every|all|both|two|three|four|five|six|seven|eight|nine|ten)"
     r"(?= (?:of )?(?:the |his |her |their |my )?(?P<what>[\w'-]+))",
@@ -88,7 +94,7 @@ _WITH: Final = re.compile(
 _BEHIND: Final = re.compile(r"behind (?:him|her|them)(?:self|selves)?$", re.IGNORECASE)
 """Where somebody is who shuts a door."""
 _BARE: Final = re.compile(
-    r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|dressing)\b"
+    r"^(?:An act|touch|pick up|put down|turn on|rotate|wash|Low touch|carrying|throwing|kicking|dressing)\b"
 )
 """Captions in which nothing is in the hands; but a box."""
 _DOING: Final = re.compile(r"\w+ing\b")
@@ -256,6 +262,8 @@ def _is_at(keyframe: PlannedKeyframe, how: str, what: str) -> bool:
 def _counts(clause: Clause, keyframes: Sequence[PlannedKeyframe]) -> list[str]:
     """How often, and to how many, of what is done once."""
     done = [one for one in keyframes if not connects(one)] or list(keyframes)
+    if found := _EXERCISED.search(clause.text):
+        return [found[0]]
     if len(done) > 1 or any(_SEEN_OFTEN.search(one.caption) for one in done):
         return []
     counted = [one[0] for one in _OFTEN.finditer(clause.text)]
