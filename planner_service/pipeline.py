@@ -47,7 +47,8 @@ Progress = Callable[[str, float], None]
 STAGES = ("plan", "furnish", "narrate", "act", "move", "judge")
 PRONOUNS = get_args(Pronouns)
 _ASLEEP: Final = re.compile(
-    r"\b(?:asleep|sleeps?|sleeping|naps?|napping|dozes?|dozing|slumbers?|(?:closes?|shuts?) (?:his|her|their|my) eyes)\b",
+    r"\b(?:asleep|sleeps?|sleeping|naps?|napping|dozes?|dozing|slumbers?"
+    r"|(?:closes?|shuts?) (?:his|her|their|my) eyes)\b",
     re.IGNORECASE,
 )
 """Words of what is acted, seated or lying, with closed eyes."""

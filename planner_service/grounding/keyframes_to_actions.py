@@ -6,10 +6,10 @@ Every contact gets the reachable spot nearest to where the body comes from; a wa
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import cos, sin
-from typing import Any, Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -33,8 +33,8 @@ from planner_service.scripts.caption_actions import Hands, done_in, look_of
 from planner_service.scripts.caption_fallbacks import Words, hashed_words, performed_as
 from planner_service.scripts.script import Keyframe, PlannedKeyframe
 from planner_service.scripts.script_repair import free_hand, hand_of
-from planner_service.themes.opening_words import Kind, comes_in, goes_out, goes_to_window, opening_of
-from scene_graphs.affordances.affordances import Spot, floor_spot, spot_to_dict, spots
+from planner_service.themes.opening_words import Kind, comes_in, goes_out, goes_to_window, leaves_the_room, opening_of
+from scene_graphs.affordances.affordances import Spot, floor_spot, spots
 from scene_graphs.errors import UserError
 from scene_graphs.furniture import display_name, has_front
 from scene_graphs.home import Home
@@ -134,9 +134,10 @@ def act(
     busy = done_at_tables(keyframes)
     for index, (keyframe, place, old) in enumerate(zip(keyframes, places, known, strict=True)):
         words_of_it = f"{keyframe.caption}; {said[index] if said else ''}"
-        stage.openings.append(opening_of(keyframe.skill, words_of_it))
+        left = keyframe.skill is Skill.LOCO and index == len(keyframes) - 1 and leaves_the_room(words_of_it)
+        stage.openings.append("door" if left else opening_of(keyframe.skill, words_of_it))
         stage.to_window |= {index} if goes_to_window(words_of_it) else set()
-        stage.out |= {index} if goes_out(words_of_it) else set()
+        stage.out |= {index} if left or goes_out(words_of_it) else set()
         stage.seated_for.append(busy[index] or keyframe.caption)
         before = keyframes[index - 1] if index else None
         if old is not None and keyframe.skill in (*NEEDS, Skill.LOCO):
@@ -591,15 +592,3 @@ def height_of(caption: str) -> str:
     if "low" in text or "prone" in text or "bend" in text or "under" in text:
         return "low"
     return "medium"
-
-
-def action_to_dict(action: Action) -> dict[str, Any]:
-    """Plain values of an action for story.json."""
-    plain: dict[str, Any] = {name: value for name, value in vars(action).items() if name != "spot"}
-    plain["reacts"] = [vars(one) for one in action.reacts]
-    for name in ("lacks", "begins", "by", "handle", "reacts"):
-        if not plain[name]:
-            del plain[name]
-    if action.handle is not None:
-        plain["handle"] = asdict(action.handle)
-    return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}

@@ -55,6 +55,7 @@ def _passed(action: Action, said: str, home: Home) -> Worked | None:
     """The door that is shut behind who has just come in by it, or opens before who goes out."""
     place = action.begins[:2] if action.begins else action.goal
     leaves = opening_of(action.skill, said) == "door" and GOES_OUT.search(said) is not None
+    leaves = leaves or (action.skill is Skill.LOCO and action.handle is not None)
     if place is None or action.lacks or not (action.begins or leaves):
         return None
     door = opening_piece(home, True, place)

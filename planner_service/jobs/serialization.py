@@ -12,10 +12,10 @@ from dataclasses import asdict, fields
 
 from motion_backend.motion import Action, Emotion, Handle, Reaction, Skill
 from planner_service.grounding.furnish import Furnished, RoomMatch
-from planner_service.grounding.keyframes_to_actions import Place, action_to_dict
+from planner_service.grounding.keyframes_to_actions import Place
 from planner_service.grounding.seat_access import pull_from_dict, pull_to_dict
 from planner_service.scripts.script import LongScript
-from scene_graphs.affordances.affordances import spot_from_dict
+from scene_graphs.affordances.affordances import spot_from_dict, spot_to_dict
 from scene_graphs.graph.furniture_graph import graph_from_dict, graph_to_dict
 from scene_graphs.home import home_from_dict, home_to_dict
 from scene_graphs.json_fields import Json
@@ -56,6 +56,18 @@ def furnished_from_dict(row: Json) -> Furnished:
         places=tuple(Place(room, object_id) for room, object_id in row["places"]),
         graphs={room: graph_from_dict(graph) for room, graph in row["graphs"].items()},
     )
+
+
+def action_to_dict(action: Action) -> Json:
+    """Plain values of an action for story.json."""
+    plain: Json = {name: value for name, value in vars(action).items() if name != "spot"}
+    plain["reacts"] = [vars(one) for one in action.reacts]
+    for name in ("lacks", "begins", "by", "handle", "reacts"):
+        if not plain[name]:
+            del plain[name]
+    if action.handle is not None:
+        plain["handle"] = asdict(action.handle)
+    return plain | {"skill": action.skill.value, "emotion": action.emotion.value, "spot": spot_to_dict(action.spot)}
 
 
 def action_from_dict(row: Json) -> Action:

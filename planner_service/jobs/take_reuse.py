@@ -15,7 +15,8 @@ from motion_backend.backend_protocol import BodyState
 from motion_backend.director import Director
 from motion_backend.motion import RISINGS, Action, Skill
 from planner_service.grounding.furnish import Furnished
-from planner_service.grounding.keyframes_to_actions import Kept, action_to_dict
+from planner_service.grounding.keyframes_to_actions import Kept
+from planner_service.jobs.serialization import action_to_dict
 from planner_service.pipeline import StoryRequest, actor
 from planner_service.store.story_store import Made, StoryGone
 from scene_graphs.json_fields import Json

@@ -20,7 +20,7 @@ from motion_backend.metrics.figure_limits import held_against
 from motion_backend.metrics.figure_words import told_limits
 from motion_backend.motion import Action
 from planner_service.cast_choice import told_look
-from planner_service.grounding.keyframes_to_actions import action_to_dict
+from planner_service.jobs.serialization import action_to_dict
 from planner_service.narration.told import UNSEEN
 from planner_service.output.film import Filmed, write_film
 from planner_service.output.replayed_story import ACTED, acted_to_dict

@@ -48,6 +48,11 @@ _GOES_OUT: Final = re.compile(
     r"|into the (?:rain|night|street|cold|snow|garden)|of the (?:house|flat|apartment|home))\b)",
     re.IGNORECASE,
 )
+_LEAVES_THE_ROOM: Final = re.compile(
+    r"\b(?:out of|leav(?:e|es|ing)|left) (?:the|his|her|their|my) (?:room|bedroom|kitchen|bathroom|study|office)"
+    r"(?=$|[,.;!])",
+    re.IGNORECASE,
+)
 _TO_THE_WINDOW: Final = re.compile(
     r"\b(?:to|towards?|over to) (?:the|a|an|his|her|their|my|its) (?:\w+ )?windows?(?!\w| (?:sill|seat))", re.IGNORECASE
 )
@@ -117,6 +122,11 @@ def goes_to_window(said: str) -> bool:
 def goes_out(said: str) -> bool:
     """Whether somebody leaves the home, by the theme's words: "runs out of the door"."""
     return bool(_GOES_OUT.search(said))
+
+
+def leaves_the_room(said: str) -> bool:
+    """Whether somebody leaves a room, by the theme's words: who does nothing after that goes out by its door."""
+    return bool(_LEAVES_THE_ROOM.search(said))
 
 
 def comes_in(said: str) -> bool:

@@ -11,8 +11,9 @@ from motion_backend.language.sentence_encoder import HashingEncoder
 from planner_service.composition.compose import compose
 from planner_service.composition.request import Request
 from planner_service.grounding.furnish import Furnished, furnish
-from planner_service.grounding.keyframes_to_actions import act, action_to_dict
+from planner_service.grounding.keyframes_to_actions import act
 from planner_service.grounding.script_revision import EditedKeyframe, RevisionError, revised, rewritten
+from planner_service.jobs.serialization import action_to_dict
 from planner_service.scripts.built_in_scripts import built_in
 from planner_service.scripts.script import LongScript
 from planner_service.scripts.script_library import Features, ScriptLibrary

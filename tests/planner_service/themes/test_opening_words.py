@@ -5,7 +5,7 @@ from __future__ import annotations
 from for_each import for_each
 
 from motion_backend.motion import Skill
-from planner_service.themes.opening_words import goes_out, goes_to_window, opening_of, spelt_out
+from planner_service.themes.opening_words import goes_out, goes_to_window, leaves_the_room, opening_of, spelt_out
 
 
 @for_each(
@@ -57,3 +57,18 @@ def test_a_way_may_lead_to_a_window(said: str, goes: bool) -> None:
 def test_who_leaves_the_home_goes_to_its_door(said: str, goes: bool) -> None:
     assert goes_out(said) == goes
     assert (opening_of(Skill.LOCO, said) == "door") == goes
+
+
+@for_each(
+    ("said", "leaves"),
+    [
+        ("rushes out of the room", True),
+        ("leaves the kitchen", True),
+        ("storms out of her bedroom.", True),
+        ("takes a plate out of the kitchen cabinet", False),
+        ("leaves the room key on the table", False),
+        ("walks through the room", False),
+    ],
+)
+def test_who_leaves_a_room_is_known_from_who_takes_things_out_of_it(said: str, leaves: bool) -> None:
+    assert leaves_the_room(said) == leaves
