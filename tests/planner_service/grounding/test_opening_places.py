@@ -194,6 +194,15 @@ def test_who_comes_in_begins_outside_the_door_looks_into_the_room_and_walks_in()
     assert grounded(*rows, said=("comes home", "tidies"), home=BLIND)[0].begins is None, "no door"
 
 
+def test_who_leaves_the_room_last_of_all_goes_out_by_its_door_and_whoever_does_something_after_it_does_not() -> None:
+    walk = ("loco", "walking quickly", "floor")
+    (last,) = grounded(walk, said=("rushes out of the room",), home=DOOR)
+    (out,) = grounded(walk, said=("rushes out of the door",), home=DOOR)
+    before, _ = grounded(walk, walk, said=("rushes out of the room", "paces up and down"), home=DOOR)
+    assert last.goal == out.goal
+    assert before.goal != out.goal
+
+
 def test_who_goes_out_walks_on_through_the_door_and_who_waits_by_it_stays_inside() -> None:
     (walk,) = grounded(("loco", "walking quickly", "floor"), said=("rushes out of the door",), home=DOOR)
     assert walk.goal is not None
