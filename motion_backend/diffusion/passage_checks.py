@@ -29,8 +29,8 @@ SOME, FEW, DEEP = 4, 2, 0.035
 """Frames in which a body that floats is overlooked, and one that is in furniture less than so many metres deep."""
 SLIDES: Final = 8.0
 """Centimetres a second that the best supported point of soles may slide over a passage: people's do 3 to 5."""
-
-
+AT_ONCE, SKIDS = 20, 16.0
+"""Frames, and centimetres a second that the same may slide over so many: a body that is carried along on its feet."""
 HOPS, TIPTOE = 0.045, 15.0
 """Metres by which a body bounces that hops, and degrees from which on its heels are off the floor as it stands."""
 JOLT: Final = 1.6
@@ -120,3 +120,13 @@ def _check_feet(made: Motion, passage: PlannedPassage) -> None:
     slide = support_slip(body)
     if slide > SLIDES and slide > WORSE * support_slip(plan):
         raise RefusedError(f"feet slid at {slide:.0f} cm/s in the {passage.phase}")
+    skid = _skid(made)
+    if skid > SKIDS and skid > WORSE * _skid(passage.plan):
+        raise RefusedError(f"feet slid at {skid:.0f} cm/s at once in the {passage.phase}")
+
+
+def _skid(motion: Motion) -> float:
+    """How fast the best supported point of soles slides over the worst `AT_ONCE` frames, cm/s."""
+    last = max(len(motion) - AT_ONCE, 0)
+    starts = sorted({*range(0, last, AT_ONCE // 2), last})
+    return max(support_slip(Kinematics.of(motion.part(at, min(at + AT_ONCE, len(motion))))) for at in starts)

@@ -217,7 +217,7 @@ class _Body:
         if passage.is_periodic:
             way = frame.inward(passage.way(done))[None, :, [0, 2]]
             kept = along(torch.from_numpy(way.astype(np.float32)), *(CLOSELY if self.number >= OTHER else ()))
-            stood = _posed(passage, done, frame, passage.stopping(done))
+            stood = _posed(passage, done, frame, passage.standing(done))
             return kept if stood is None else both(kept, stood)
         if passage.hand is not None:
             goal, left = passage.hand

@@ -148,8 +148,11 @@ class PlannedPassage:
         last = self.plan.root_positions[-2:, [0, 2]].astype(np.float64)
         return float(np.linalg.norm(last[1] - last[0])) * FPS < STOPPED
 
-    def stopping(self, done: int) -> Array:
-        """How far a walk has come to its stand in the new frames of the window after `done` frames. (14,)."""
+    def standing(self, done: int) -> Array:
+        """How far who walks or stands is held to how the plan stands in the new frames of the window after `done`
+        frames: who does something where he stands throughout. (14,)."""
+        if self.phase is PhaseKind.STAND and self.part.action.skill is Skill.LOCO:
+            return eased((1 + _keys(done)) / LOOK)
         return eased(1 - (len(self.plan) - 1 - _keys(done)) / STOPS) if self.stops else np.zeros(WINDOW - HISTORY)
 
     def held(self, done: int) -> Array:

@@ -123,7 +123,9 @@ SWING_TURNS: Final = tuple(sorted(np.arange(-np.pi, np.pi, np.pi / 12).tolist(),
 OPEN_WAYS: Final = 16
 """In so many directions open floor is looked for,"""
 OPEN_AWAY: Final = np.arange(0.0, 2.5, 0.15)
-"""so far away (metres);"""
+"""so far away (metres),"""
+OPEN_BESIDE: Final = np.array([0.0, 0.125, 0.25])
+"""of who does it at a piece, and is to stay by that, only so far;"""
 OPEN_AHEAD: Final = (0.4, 0.8, 1.2, 1.6)
 """and so far ahead of who stands there it is open (metres)."""
 LANE: Final = 0.3
@@ -316,8 +318,9 @@ def _make_room(body: Body, action: Action, needed: Room) -> float:
             body.note(NO_LANE)
             return KNEES
         return 1.0
-    if needed.gone_for and action.object_id is None and _free(body, body.place) < room:
-        go(body, *_open_floor(body, room), replace(action, caption="walk"))
+    if needed.gone_for and _free(body, body.place) < room:
+        far = OPEN_AWAY if action.object_id is None else OPEN_BESIDE
+        go(body, *_open_floor(body, room, far), replace(action, caption="walk"))
         body.enter(PhaseKind.STAND)
     return min(max(_free(body, body.place), 0.0) / room, 1.0) if room else 1.0
 
@@ -349,11 +352,12 @@ def _in_sight(body: Body) -> list[Point]:
     return [place for place in found if body.scene.walkable.sees(body.place, place) and _free(body, place) > 0]
 
 
-def _open_floor(body: Body, room: float) -> tuple[Point, float]:
-    """The nearest place in sight with so much room about it (metres), else the roomiest; and where one looks there."""
+def _open_floor(body: Body, room: float, far: Array) -> tuple[Point, float]:
+    """The nearest place in sight with so much room about it (metres), else the roomiest, of those so far away; and
+    where one looks there."""
     yaws, here = np.arange(OPEN_WAYS) * 2 * np.pi / OPEN_WAYS, np.array(body.place)
     ways = np.stack([np.sin(yaws), np.cos(yaws)], axis=-1)
-    found = [(float(away), tuple((here + away * way).tolist())) for away in OPEN_AWAY for way in ways]
+    found = [(float(away), tuple((here + away * way).tolist())) for away in far for way in ways]
     seen = [(away, place) for away, place in found if body.scene.walkable.sees(body.place, place)]
     place = max(seen, key=lambda one: (min(_free(body, one[1]), room), -one[0]), default=(0.0, body.place))[1]
     ahead = np.array(place) + np.array(OPEN_AHEAD)[:, None, None] * ways  # (N, ways, 2)

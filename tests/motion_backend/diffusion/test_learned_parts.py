@@ -216,3 +216,19 @@ def test_who_comes_to_a_stand_stands_upright_on_straight_legs() -> None:
         hip, knee, ankle = (places[INDEX[f"{side}_{joint}"]] for joint in ("hip", "knee", "ankle"))
         straight = np.linalg.norm(hip - ankle) / (np.linalg.norm(hip - knee) + np.linalg.norm(knee - ankle))
         assert straight > 0.985
+
+
+def test_who_dances_where_they_stand_does_so_with_their_legs() -> None:
+    dance = Action(Skill.LOCO, "dancing steps, arms swinging", Emotion.HAPPY, "floor", goal=(3.2, 2.6), stands=9.0)
+    ((made, _),) = acted(dance)
+    director = Director(ProceduralBackend())
+    plan, _ = director.act(small_home(), dance, director.begin(small_home(), Character(), 3))
+    assert made.phases[-1].backend == "diffusion"
+    bends = [_knees_bend(motion.part(motion.phases[-1].start, len(motion))) for motion in (made, plan)]
+    assert bends[0] > 0.7 * bends[1] > 0.07
+
+
+def _knees_bend(motion: Motion) -> float:
+    """How much the bend of the knees changes (standard deviation, radians), the mean of both."""
+    knees = motion.local_rotations[:, [INDEX["left_knee"], INDEX["right_knee"]]].astype(np.float64)
+    return float(np.linalg.norm(rotations.quat_to_rotvec(knees), axis=-1).std(axis=0).mean())

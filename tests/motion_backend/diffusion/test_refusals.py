@@ -148,6 +148,13 @@ def stood(frames: int, up: float = 0.0, slide: float = 0.0) -> Motion:
     )  # fmt: skip
 
 
+def carried_along(frames: int, slide: float, since: int, until: int) -> Motion:
+    """The same that slides from one frame to another."""
+    made = stood(frames)
+    gone = np.clip(np.arange(frames) - since, 0, until - since)[:, None] * [slide / 30, 0.0, 0.0]
+    return replace(made, root_positions=(made.root_positions + gone).astype(np.float32))
+
+
 def into_the_bed(motion: Motion) -> Motion:
     moved = motion.root_positions + np.array([1.2 - 3.0, -0.2, 1.2 - 3.0], dtype=np.float32)
     return replace(motion, root_positions=moved)
@@ -161,6 +168,8 @@ def into_the_bed(motion: Motion) -> Motion:
         (stood(30, up=0.2), "floated in 30 frames"),
         (stood(30, slide=0.05), ""),
         (stood(30, slide=0.3), "feet slid at 30 cm/s"),
+        (carried_along(120, 0.1, 40, 60), ""),
+        (carried_along(120, 0.3, 40, 60), "feet slid at 30 cm/s at once"),
         (into_the_bed(stood(30)), "deep in furniture"),
     ],
 )
