@@ -122,9 +122,9 @@ STEEPEST: Final = 0.45
 """The sine of the angle from above at which a camera looks at the whole of a body, at most."""
 EXACT: Final = 0.02
 """Metres that what was just within a picture may be beyond, where it is turned."""
-TRIES, HEIGHTS = 12, 2
-"""Views of a shot of which pictures are looked at, and how many of them at most from one side: one side may show what
-hides from the others."""
+TRIES: Final = 9
+"""Views of a shot of which pictures are looked at, each from another side: one side may show what hides from the
+others. Of the best of them those from other heights are looked at too."""
 
 
 @dataclass(frozen=True)
@@ -216,15 +216,27 @@ class _Director:
             bodies = replace(bodies, face=None if counterpart.kind is Kind.WINDOW else bodies.face, profile=True)
         telling = [view for view in views if view.tells]
         tried = telling[:TRIES] or views[:TRIES]
-        best = max((self._looked(framing, bodies, view) for view in tried), key=lambda one: one.worth)
+        best = self._first(framing, bodies, tried)
         if not any(best.worth[0]):  # what tells of it hides who does it
-            others = [self._looked(framing, bodies, view) for view in views[:TRIES] if not view.tells]
-            best = max([best, *others], key=lambda one: one.worth)
-        aside = [self._looked(framing, bodies, view) for view in best.view.aside(self.aspect)]
-        best = max([best, *aside], key=lambda one: one.worth)
+            best = self._first(framing, bodies, [view for view in views[:TRIES] if not view.tells], best)
+        best = self._first(framing, bodies, best.view.others, best)
+        best = self._first(framing, bodies, [*best.view.aside(self.aspect)], best)
         # Hands may be before a face that weeps, and a head that sank shows its crown.
         enough = any(best.worth[0]) if framing.of_face else best.worth[0][0]
         return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), enough
+
+    def _first(
+        self, framing: Framing, bodies: Appearances, views: Sequence[_View], best: _Looked | None = None
+    ) -> _Looked:
+        """The one of some views, the best first, that makes the best picture, if it is better than one of others; none
+        is made of what could not be better."""
+        for view in views:
+            if best is not None and all(best.worth[0]) and view.score + bodies.most <= best.worth[1]:
+                break
+            looked = self._looked(framing, bodies, view)
+            best = looked if best is None or looked.worth > best.worth else best
+        assert best is not None
+        return best
 
     def _looked(self, framing: Framing, bodies: Appearances, view: _View) -> _Looked:
         """A view of which a small picture was looked at."""
@@ -251,7 +263,7 @@ class _Director:
         entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
         there = self._counterpart(framing)
         openings = [one.corners for one in (entrance, there) if one is not None]
-        points = np.concatenate([self._reached(framing), *openings])
+        points = _outermost(np.concatenate([self._reached(framing), *openings]))
         behind = there is not None and there.kind is Kind.WINDOW
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
@@ -285,7 +297,8 @@ class _Director:
                 score += TO_COUNTERPART * told - self._broken(camera, before, start)
                 tells = told >= SHOWN or (there is not None and there.kind is Kind.MIRROR)
                 from_there.append(_View(score, camera, points, tells))
-            scored += _sorted(from_there)[:HEIGHTS]
+            first, *others = _sorted(from_there)
+            scored.append(first._replace(others=tuple(others[:1])))
         return _sorted(_frontal(scored, front))
 
     def _reached(self, framing: Framing) -> Array:
@@ -374,6 +387,7 @@ class _Director:
                 if float(np.mean(_turns(ahead, towards))) > WIDEST_NEAR[close.subject]:
                     continue
                 score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * abs(pitch)
+                score -= FROM_FEET * _from_feet(rotations.rotate(turns[:, 0], np.array([0.0, 1.0, 0.0])), towards)
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score += TO_FRONT * front.seen(camera) if front is not None else 0.0
@@ -410,6 +424,8 @@ class _View(NamedTuple):
     """What is in its picture wherever it is turned to, (N, 3); none where it is not turned."""
     tells: bool = True
     """Whether it shows the window or door that the body stands before, if there is one."""
+    others: tuple[_View, ...] = ()
+    """Those from the same side and other heights, the best first."""
 
     def aside(self, aspect: float) -> Iterator[_View]:
         """The same turned to either side as far as it goes, up to where the body has a third of the picture before or
@@ -436,6 +452,13 @@ def _yaws(front: Front | None) -> Array:
 
 def _sampled(start: int, stop: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(start, stop - 1, SAMPLES).round().astype(np.int64))
+
+
+def _outermost(points: Array) -> Array:
+    """Those of some points (N, 3) between which all others lie: what holds these in its picture holds all. (M, 3)."""
+    from scipy.spatial import ConvexHull
+
+    return np.asarray(points[ConvexHull(points, qhull_options="QJ").vertices])
 
 
 def _middle(points: Array) -> tuple[float, float, float]:
