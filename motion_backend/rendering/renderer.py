@@ -119,7 +119,8 @@ def nearest_of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -
     corners = [np.asarray(one.vertices, dtype=np.float64)[one.faces] for one in solid]
     viewed, sources = clip(camera.view(np.concatenate([np.zeros((0, 3, 3)), *corners])), camera)
     screen = camera.project(viewed, size)
-    smooth = np.repeat([one.normals is not None for one in solid], [len(one.faces) for one in solid])
+    closed = np.array([one.normals is not None for one in solid], dtype=bool)
+    smooth = np.repeat(closed, [len(one.faces) for one in solid])
     shown = np.flatnonzero(~smooth[sources] | turned_to_us(screen))  # as in `_Scene.visible`
     draw(screen[shown], np.full(len(shown), 4, dtype=np.int64), 0, nearest, best)
     inside = sum(len(one.faces) for one in solid if not one.outside)
