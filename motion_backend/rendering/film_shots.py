@@ -246,12 +246,15 @@ class _Director:
         return _Looked((look.rank, view.score + look.appeal if any(look.rank) else look.shown), view, scene)
 
     def _standing_open(self, start: int, stop: int, camera: Camera) -> list[Solid]:
-        """Doors and drawers as they are at first, amidst and at last in some frames, which hide what is behind."""
+        """Doors and drawers as they are at first, amidst and at last in some frames, which hide what is behind. A door
+        and its hall that are seen from beyond their wall are outside of a home."""
         found: dict[tuple[str, bytes], Solid] = {}
         for frame in (start, (start + stop) // 2, stop - 1):
             there = [one for one in self.props if one.own is not None and one.start <= frame < one.stop]
             for track, solid in zip(there, lying_solids(there, frame, camera, np.inf), strict=True):
-                found[track.prop, track.turns[frame - track.start].tobytes()] = solid
+                now = frame - track.start
+                outside = self.set.is_beyond(camera, track.positions[now])
+                found[track.prop, track.turns[now].tobytes()] = replace(solid, outside=outside)
         return [*found.values()]
 
     def _views(self, framing: Framing, before: FilmShot | None) -> list[_View]:
@@ -329,10 +332,13 @@ class _Director:
         return self.joints[(start + stop - 1) // 2, list(framing.hands)]
 
     def _front(self, framing: Framing, sight: Sight) -> Front | None:
-        """Of what is touched, if that stands up before the hand, in the last frame of its deed."""
+        """Of what is touched, if that stands up before the hand, in the last frame of its deed in which it does: who
+        opens a door ends with the hand in the room."""
         _, stop = framing.deed or (framing.start, framing.stop)
-        touched = any(p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop for p in self.motion.phases)
-        return sight.front(self.joints[stop - 1, framing.hands[0]]) if framing.hands and touched else None
+        touched = (p.start for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop)
+        start = next(touched, stop) if framing.hands else stop
+        hands = (self.joints[frame, framing.hands[0]] for frame in range(stop - 1, start - 1, -EVERY))
+        return next((front for hand in hands if (front := sight.front(hand)) is not None), None)
 
     def _counterpart(self, framing: Framing) -> Counterpart | None:
         """What the body stands before. Of who touches something no window, at which a desk may stand; of who makes
