@@ -18,7 +18,7 @@ from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points, prop_tracks, replaced
-from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
+from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking, outermost
 from motion_backend.rendering.film_counterpart import Counterpart, Kind
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
 from motion_backend.rendering.film_edit import FilmEdit, Frames
@@ -266,7 +266,7 @@ class _Director:
         entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
         there = self._counterpart(framing)
         openings = [one.corners for one in (entrance, there) if one is not None]
-        points = _outermost(np.concatenate([self._reached(framing), *openings]))
+        points = outermost(np.concatenate([self._reached(framing), *openings]))
         behind = there is not None and there.kind is Kind.WINDOW
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
@@ -332,12 +332,15 @@ class _Director:
         return self.joints[(start + stop - 1) // 2, list(framing.hands)]
 
     def _front(self, framing: Framing, sight: Sight) -> Front | None:
-        """Of what is touched, if that stands up before the hand, in the last frame of its deed in which it does: who
-        opens a door ends with the hand in the room."""
+        """Of what is touched, if that stands up before the hand, in the last frame of its deed or in that in which a
+        door sets off, which ends with the hand in the room."""
         _, stop = framing.deed or (framing.start, framing.stop)
-        touched = (p.start for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop)
-        start = next(touched, stop) if framing.hands else stop
-        hands = (self.joints[frame, framing.hands[0]] for frame in range(stop - 1, start - 1, -EVERY))
+        starts = [p.start for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop]
+        doors = [track for track in self.props if track.own is not None]
+        if not starts or not framing.hands:
+            return None
+        frames = [stop - 1, *(track.sets_off(starts[0], stop) or stop - 1 for track in doors)]
+        hands = (self.joints[frame, framing.hands[0]] for frame in frames)
         return next((front for hand in hands if (front := sight.front(hand)) is not None), None)
 
     def _counterpart(self, framing: Framing) -> Counterpart | None:
@@ -458,13 +461,6 @@ def _yaws(front: Front | None) -> Array:
 
 def _sampled(start: int, stop: int) -> NDArray[np.int64]:
     return np.unique(np.linspace(start, stop - 1, SAMPLES).round().astype(np.int64))
-
-
-def _outermost(points: Array) -> Array:
-    """Those of some points (N, 3) between which all others lie: what holds these in its picture holds all. (M, 3)."""
-    from scipy.spatial import ConvexHull
-
-    return np.asarray(points[ConvexHull(points, qhull_options="QJ").vertices])
 
 
 def _middle(points: Array) -> tuple[float, float, float]:
