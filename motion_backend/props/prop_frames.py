@@ -116,6 +116,13 @@ class PropTrack:
         still = [not np.ptp(one[first:last], axis=0).any() for one in (self.positions, self.turns)]
         return bool(whole.all()) and all(still)
 
+    def sets_off(self, start: int, stop: int) -> int | None:
+        """The first of some frames in which it moves; None where it stays."""
+        first = max(start - self.start, 0)
+        ways = (np.diff(one[first : max(stop - self.start, first)], axis=0) for one in (self.positions, self.turns))
+        moving = np.flatnonzero(sum(np.abs(way).sum(axis=1) for way in ways))
+        return self.start + first + int(moving[0]) if len(moving) else None
+
     def is_held(self, frame: int) -> bool:
         """Whether it is in the hands at a frame."""
         now = frame - self.start

@@ -271,6 +271,13 @@ def liking(motion: Motion, shot: Shot, yaws: Array = YAWS) -> Array:
     return np.asarray(np.cos(np.abs(rotations.wrap(yaws - facing)) - best) * 0.6)
 
 
+def outermost(points: Array) -> Array:
+    """Those of some points (N, 3) between which all others lie: what holds these in its picture holds all. (M, 3)."""
+    from scipy.spatial import ConvexHull
+
+    return np.asarray(points[ConvexHull(points, qhull_options="QJ").vertices])
+
+
 def visible_share(objects: Sequence[Placed], eye: tuple[float, float, float], points: Array) -> float:
     """The share of points (N, 3) that no part of the objects hides from the eye."""
     return float(1.0 - Boxes.of(objects).hide(np.asarray(eye), points).mean())

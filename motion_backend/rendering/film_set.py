@@ -25,6 +25,8 @@ STEP: Final = 15
 """Frames between two places of a body that walls may not hide."""
 GROUND: Final = 12.0
 """Metres to every side of what is seen; farther off all is haze."""
+IN_WALL: Final = 0.15
+"""Metres from the line of a wall up to which something is in it."""
 UNDER: Final = 0.1
 """Metres below a ceiling up to which an eye looks at it from below."""
 GROUND_COLOR: Final = (0.76, 0.75, 0.73)
@@ -75,6 +77,12 @@ class FilmSet:
             if camera.eye[1] < extension.height - UNDER:
                 beyond.append(extension.ceiling(sides))
         return [*(prop.solid for prop in shown), *beyond, self.base, self._ground(camera)]
+
+    def is_beyond(self, camera: Camera, place: Array) -> bool:
+        """Whether a camera stands on the far side of the wall in which there is a place (3,)."""
+        eye, here = np.asarray(camera.eye)[[0, 2]], place[[0, 2]]
+        sides = (prop.side for prop in self.props if prop.side is not None)
+        return any(side.distance(here) < IN_WALL and not side.faces(eye) for side in sides)
 
     def _room_of(self, pose: Array) -> int | None:
         """The room in which a body (22, 3) is."""

@@ -18,7 +18,7 @@ from motion_backend import rotations
 from motion_backend.body.cast import PLAIN, Role
 from motion_backend.motion import Motion, PhaseKind
 from motion_backend.props import PropTrack, prop_points, prop_tracks, replaced
-from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking
+from motion_backend.rendering.camera import FOV, YAWS, Front, Shot, Sight, liking, outermost
 from motion_backend.rendering.film_counterpart import Counterpart, Kind
 from motion_backend.rendering.film_cuts import Cut, Framing, Subject, film_cuts
 from motion_backend.rendering.film_edit import FilmEdit, Frames
@@ -122,9 +122,9 @@ STEEPEST: Final = 0.45
 """The sine of the angle from above at which a camera looks at the whole of a body, at most."""
 EXACT: Final = 0.02
 """Metres that what was just within a picture may be beyond, where it is turned."""
-TRIES, HEIGHTS = 12, 2
-"""Views of a shot of which pictures are looked at, and how many of them at most from one side: one side may show what
-hides from the others."""
+TRIES: Final = 9
+"""Views of a shot of which pictures are looked at, each from another side: one side may show what hides from the
+others. Of the best of them those from other heights are looked at too."""
 
 
 @dataclass(frozen=True)
@@ -216,15 +216,27 @@ class _Director:
             bodies = replace(bodies, face=None if counterpart.kind is Kind.WINDOW else bodies.face, profile=True)
         telling = [view for view in views if view.tells]
         tried = telling[:TRIES] or views[:TRIES]
-        best = max((self._looked(framing, bodies, view) for view in tried), key=lambda one: one.worth)
+        best = self._first(framing, bodies, tried)
         if not any(best.worth[0]):  # what tells of it hides who does it
-            others = [self._looked(framing, bodies, view) for view in views[:TRIES] if not view.tells]
-            best = max([best, *others], key=lambda one: one.worth)
-        aside = [self._looked(framing, bodies, view) for view in best.view.aside(self.aspect)]
-        best = max([best, *aside], key=lambda one: one.worth)
+            best = self._first(framing, bodies, [view for view in views[:TRIES] if not view.tells], best)
+        best = self._first(framing, bodies, best.view.others, best)
+        best = self._first(framing, bodies, [*best.view.aside(self.aspect)], best)
         # Hands may be before a face that weeps, and a head that sank shows its crown.
         enough = any(best.worth[0]) if framing.of_face else best.worth[0][0]
         return FilmShot(start, stop, best.view.camera, best.scene, framing.subject), enough
+
+    def _first(
+        self, framing: Framing, bodies: Appearances, views: Sequence[_View], best: _Looked | None = None
+    ) -> _Looked:
+        """The one of some views, the best first, that makes the best picture, if it is better than one of others; none
+        is made of what could not be better."""
+        for view in views:
+            if best is not None and all(best.worth[0]) and view.score + bodies.most <= best.worth[1]:
+                break
+            looked = self._looked(framing, bodies, view)
+            best = looked if best is None or looked.worth > best.worth else best
+        assert best is not None
+        return best
 
     def _looked(self, framing: Framing, bodies: Appearances, view: _View) -> _Looked:
         """A view of which a small picture was looked at."""
@@ -234,12 +246,15 @@ class _Director:
         return _Looked((look.rank, view.score + look.appeal if any(look.rank) else look.shown), view, scene)
 
     def _standing_open(self, start: int, stop: int, camera: Camera) -> list[Solid]:
-        """Doors and drawers as they are at first, amidst and at last in some frames, which hide what is behind."""
+        """Doors and drawers as they are at first, amidst and at last in some frames, which hide what is behind. A door
+        and its hall that are seen from beyond their wall are outside of a home."""
         found: dict[tuple[str, bytes], Solid] = {}
         for frame in (start, (start + stop) // 2, stop - 1):
             there = [one for one in self.props if one.own is not None and one.start <= frame < one.stop]
             for track, solid in zip(there, lying_solids(there, frame, camera, np.inf), strict=True):
-                found[track.prop, track.turns[frame - track.start].tobytes()] = solid
+                now = frame - track.start
+                outside = self.set.is_beyond(camera, track.positions[now])
+                found[track.prop, track.turns[now].tobytes()] = replace(solid, outside=outside)
         return [*found.values()]
 
     def _views(self, framing: Framing, before: FilmShot | None) -> list[_View]:
@@ -251,7 +266,7 @@ class _Director:
         entrance = Entrance.of(self.set.home, self.motion) if start == 0 else None
         there = self._counterpart(framing)
         openings = [one.corners for one in (entrance, there) if one is not None]
-        points = np.concatenate([self._reached(framing), *openings])
+        points = outermost(np.concatenate([self._reached(framing), *openings]))
         behind = there is not None and there.kind is Kind.WINDOW
         watched = np.empty(0, np.int64) if behind else self._watched(frames, framing.deed)
         ahead = rotations.rotate(self.turns[watched, INDEX["head"]], np.array([0.0, 0.0, 1.0]))
@@ -285,7 +300,8 @@ class _Director:
                 score += TO_COUNTERPART * told - self._broken(camera, before, start)
                 tells = told >= SHOWN or (there is not None and there.kind is Kind.MIRROR)
                 from_there.append(_View(score, camera, points, tells))
-            scored += _sorted(from_there)[:HEIGHTS]
+            first, *others = _sorted(from_there)
+            scored.append(first._replace(others=tuple(others[:1])))
         return _sorted(_frontal(scored, front))
 
     def _reached(self, framing: Framing) -> Array:
@@ -316,10 +332,16 @@ class _Director:
         return self.joints[(start + stop - 1) // 2, list(framing.hands)]
 
     def _front(self, framing: Framing, sight: Sight) -> Front | None:
-        """Of what is touched, if that stands up before the hand, in the last frame of its deed."""
+        """Of what is touched, if that stands up before the hand, in the last frame of its deed or in that in which a
+        door sets off, which ends with the hand in the room."""
         _, stop = framing.deed or (framing.start, framing.stop)
-        touched = any(p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop for p in self.motion.phases)
-        return sight.front(self.joints[stop - 1, framing.hands[0]]) if framing.hands and touched else None
+        starts = [p.start for p in self.motion.phases if p.kind is PhaseKind.TOUCH and p.start < stop <= p.stop]
+        doors = [track for track in self.props if track.own is not None]
+        if not starts or not framing.hands:
+            return None
+        frames = [stop - 1, *(track.sets_off(starts[0], stop) or stop - 1 for track in doors)]
+        hands = (self.joints[frame, framing.hands[0]] for frame in frames)
+        return next((front for hand in hands if (front := sight.front(hand)) is not None), None)
 
     def _counterpart(self, framing: Framing) -> Counterpart | None:
         """What the body stands before. Of who touches something no window, at which a desk may stand; of who makes
@@ -374,6 +396,7 @@ class _Director:
                 if float(np.mean(_turns(ahead, towards))) > WIDEST_NEAR[close.subject]:
                     continue
                 score = sight.score(camera, poses) + FROM_INSIDE * sight.indoors(camera) - steep * abs(pitch)
+                score -= FROM_FEET * _from_feet(rotations.rotate(turns[:, 0], np.array([0.0, 1.0, 0.0])), towards)
                 score += _faces(ahead, towards) * (1.0 if close.subject is Subject.FACE else 0.4)
                 if close.subject is Subject.HANDS:
                     score += TO_FRONT * front.seen(camera) if front is not None else 0.0
@@ -410,6 +433,8 @@ class _View(NamedTuple):
     """What is in its picture wherever it is turned to, (N, 3); none where it is not turned."""
     tells: bool = True
     """Whether it shows the window or door that the body stands before, if there is one."""
+    others: tuple[_View, ...] = ()
+    """Those from the same side and other heights, the best first."""
 
     def aside(self, aspect: float) -> Iterator[_View]:
         """The same turned to either side as far as it goes, up to where the body has a third of the picture before or

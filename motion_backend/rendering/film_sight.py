@@ -174,6 +174,14 @@ class Appearances:
         """Pixels of a picture that is looked at."""
         return round(HEIGHT * self.aspect), HEIGHT
 
+    @cached_property
+    def most(self) -> float:
+        """The appeal of the best picture that there may be of them."""
+        body, part, held = APPEALS
+        parts = [held * any(len(points) for points in self.held)]
+        parts += [TO_FACE * _is_asked(self.face, self.watched), TO_DEED * _is_asked(self.hand, self.doing)]
+        return body + part + sum(parts)
+
     def look(self, scene: Sequence[Solid], camera: Camera) -> Look:
         """What a camera shows of the bodies in a home."""
         return self._picture(scene, camera).look()
@@ -355,6 +363,11 @@ class _Picture:
             ring = (away > RING[0]) & (away < RING[1]) & (down < CHIN * radius)
             found.append(float(edges[ring].mean()) if ring.any() else 0.0)
         return min(float(np.mean(found)) / CLUTTERED, 1.0)
+
+
+def _is_asked(part: NDArray[np.bool_] | None, when: NDArray[np.bool_] | None) -> bool:
+    """Whether a part (V,) is to be seen in any frames (T,)."""
+    return part is not None and when is not None and bool(part.any() and when.any())
 
 
 def _some(wanted: NDArray[np.bool_]) -> list[int]:

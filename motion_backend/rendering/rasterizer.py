@@ -113,7 +113,8 @@ def clip(viewed: Real, camera: Camera) -> tuple[Real, Ints]:
     pieces, sources = [viewed[behind == 0]], [index[behind == 0]]
     for f in np.flatnonzero((behind > 0) & (behind < 3)):
         polygon: list[Real] = []
-        for a, b in zip(viewed[f], np.roll(viewed[f], -1, axis=0), strict=True):
+        corners = [*viewed[f]]
+        for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
             if a[2] >= NEAR:
                 polygon.append(a)
             if (a[2] < NEAR) != (b[2] < NEAR):

@@ -118,9 +118,13 @@ def nearest_of(solids: Sequence[Solid], camera: Camera, size: tuple[int, int]) -
     nearest, best = empty_buffers(size)
     corners = [np.asarray(one.vertices, dtype=np.float64)[one.faces] for one in solid]
     viewed, sources = clip(camera.view(np.concatenate([np.zeros((0, 3, 3)), *corners])), camera)
-    draw(camera.project(viewed, size), np.full(len(viewed), 4, dtype=np.int64), 0, nearest, best)
+    screen = camera.project(viewed, size)
+    closed = np.array([one.normals is not None for one in solid], dtype=bool)
+    smooth = np.repeat(closed, [len(one.faces) for one in solid])
+    shown = np.flatnonzero(~smooth[sources] | turned_to_us(screen))  # as in `_Scene.visible`
+    draw(screen[shown], np.full(len(shown), 4, dtype=np.int64), 0, nearest, best)
     inside = sum(len(one.faces) for one in solid if not one.outside)
-    return best, np.append(sources < inside, False)[nearest]
+    return best, np.append(sources[shown] < inside, False)[nearest]
 
 
 @dataclass(frozen=True)

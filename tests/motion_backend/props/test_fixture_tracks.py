@@ -220,3 +220,10 @@ def test_what_is_worked_survives_json():
     _, role, _ = played("wardrobe", "open", "into")
     for one in role.worked.values():
         assert worked_from_dict(json.loads(json.dumps(worked_to_dict(one)))) == one
+
+
+def test_what_moves_sets_off_in_a_frame_and_what_stays_in_none() -> None:
+    ways = np.array([[0.0, 0.0, 0.0]] * 5 + [[0.1, 0.0, 0.0]] * 5)
+    track = PropTrack("door", 10, ways, np.tile(rotations.IDENTITY, (10, 1)), np.ones(10))
+    assert track.sets_off(0, 30) == 14
+    assert track.sets_off(15, 30) is track.sets_off(0, 14) is track.sets_off(40, 50) is None

@@ -192,3 +192,22 @@ def test_what_is_held_counts_by_its_worst_second_too() -> None:
     camera = orbit((0.0, 0.9, 0.0), 4.0, 0.0, 0.1)
     appeals = [replace(seen, held=held).look([WALL], camera).appeal for held in ((free,) * looks, spread, row)]
     assert appeals[0] > appeals[1] > appeals[2]
+
+
+def test_a_wall_with_one_side_hides_a_body_from_that_side_alone() -> None:
+    """The hall behind a door is drawn for who looks out of the room."""
+    motion = with_knees_drawn_up(0.0)
+    bodies = Appearances.of(motion, Framing(0, 1), 16 / 9)
+    corners = np.array([[-2.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 3.0, 1.0], [-2.0, 3.0, 1.0]])
+    towards_us = Solid(corners, np.array([[0, 1, 2], [0, 2, 3]]), normals=np.tile([0.0, 0.0, 1.0], (4, 1)))
+    turned_away = replace(towards_us, faces=towards_us.faces[:, ::-1])
+    camera = orbit((0.0, 0.9, 0.0), 4.0, 0.0, 0.1)
+    assert bodies.shares([towards_us], camera).max() == 0.0
+    assert np.array_equal(bodies.shares([turned_away], camera), bodies.shares([], camera))
+
+
+def test_no_picture_is_better_than_the_best_that_there_may_be() -> None:
+    motion = with_knees_drawn_up(0.5)
+    bodies = Appearances.of(motion, Framing(0, 1, hands=(20, 21), deed=(0, 1)), 16 / 9)
+    for yaw in np.linspace(-np.pi, np.pi, 9):
+        assert bodies.look([], orbit((0.0, 0.9, 0.0), 4.0, float(yaw), 0.1)).appeal <= bodies.most
