@@ -142,7 +142,7 @@ def arm() -> Field:
 
 
 def hand() -> Field:
-    """Palm down, thumb forward, fingers a little apart and curled."""
+    """Palm down, thumb forward, fingers side by side and curled as those of a hand at rest, the little one most."""
     palm = tube(
         0,
         [
@@ -159,13 +159,13 @@ def hand() -> Field:
         union(
             0.002,
             capsule((0.805, 0.479, z), (x - 0.036, 0.472, z + 0.4 * fan), (0.0100, 0.0092)),
-            capsule((x - 0.036, 0.472, z + 0.4 * fan), (x, 0.459, z + fan), (0.0092, 0.0075)),
+            capsule((x - 0.036, 0.472, z + 0.4 * fan), (x, tip, z + fan), (0.0092, 0.0075)),
         )
-        for z, fan, x in (
-            (0.033, 0.010, 0.876),
-            (0.012, 0.003, 0.885),
-            (-0.010, -0.004, 0.879),
-            (-0.031, -0.010, 0.860),
+        for z, fan, x, tip in (
+            (0.033, 0.002, 0.874, 0.455),
+            (0.012, 0.000, 0.881, 0.452),
+            (-0.010, 0.000, 0.874, 0.449),
+            (-0.031, -0.001, 0.854, 0.447),
         )
     ]
     thumb = union(

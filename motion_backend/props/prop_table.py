@@ -98,6 +98,8 @@ class Called:
     """Props of captions that it is held in the place of."""
     offset_m: Vector | None = None
     """From the palm, in its own frame; None: its way's."""
+    low: bool = False
+    """Whether it is carried at the side, the arm straight."""
     flat: bool = False
     """Whether it lies on its back where it is put down, whatever its way has: a coat, which hangs from a hand."""
 

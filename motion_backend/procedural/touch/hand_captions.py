@@ -12,11 +12,14 @@ from motion_backend import rotations
 from motion_backend.procedural.emotion_style import arm_arrays
 from motion_backend.procedural.pose import Pose
 from motion_backend.procedural.style_sheet import read_style_sheet
+from motion_backend.props.prop_table import shown_as
 from motion_backend.rotations import Array
 from motion_backend.skeleton import HAND_REST
 
 CARRIES: Final = 0.08
 """A wrist so near to where it would carry something carries it (arm lengths)."""
+CARRYING: Final = ("carry", "carry_low")
+"""The arm poses of a hand that holds something: before the body, or at the side where that hangs from it."""
 FREE: Final = ("hang", "bent")
 """Arms that swing as one walks."""
 FINGERS, FINGER = 0.14, 0.024
@@ -86,17 +89,33 @@ def steadies(caption: str) -> bool:
     return handling_of(caption) == "rotate"
 
 
-def arms_on_the_way(pose: Pose, arms: tuple[str, str]) -> tuple[str, str]:
-    """How arms are held in walking: a hand that carries something keeps it before the body, if it would only hang."""
-    left, right = ("carry" if holds and arm in FREE else arm for holds, arm in zip(holding(pose), arms, strict=True))
+def arms_on_the_way(pose: Pose, arms: tuple[str, str], thing: str | None = None) -> tuple[str, str]:
+    """How arms are held in walking: a hand that carries something goes on to, if it would only hang; a `thing` of that
+    name as that is carried."""
+    left, right = (
+        (carried_as(thing) if thing else carried) if carried and arm in FREE else arm
+        for carried, arm in zip(_carried(pose), arms, strict=True)
+    )
     return left, right
 
 
 def holding(pose: Pose) -> tuple[bool, bool]:
-    """Whether the left and the right hand carry something before the body."""
-    wrists, _ = arm_arrays("carry", "carry")
-    left, right = np.linalg.norm(pose.arms - wrists, axis=-1) < CARRIES
-    return bool(left), bool(right)
+    """Whether the left and the right hand carry something."""
+    left, right = map(bool, _carried(pose))
+    return left, right
+
+
+def carried_as(thing: str | None) -> str:
+    """The arm pose in which a thing of that name is carried."""
+    called = shown_as(thing) if thing else None
+    return "carry_low" if called is not None and called.low else "carry"
+
+
+def _carried(pose: Pose) -> tuple[str, str]:
+    """In which pose the left and the right hand carry something; "" where one does not."""
+    near = [np.linalg.norm(pose.arms - arm_arrays(name, name)[0], axis=-1) < CARRIES for name in CARRYING]
+    left, right = (next((name for name, is_so in zip(CARRYING, near, strict=True) if is_so[i]), "") for i in (0, 1))
+    return left, right
 
 
 def with_arms(pose: Pose, hands: Iterable[int], name: str) -> Pose:

@@ -15,7 +15,16 @@ from motion_backend.motion import FPS, Action, Handle, PhaseKind
 from motion_backend.procedural.body_state import Body, Point, spot_of
 from motion_backend.procedural.emotion_style import bearing_of
 from motion_backend.procedural.held_poses import alive
-from motion_backend.procedural.touch.hand_captions import Laid, handling_of, holding, steadies, with_both_hands
+from motion_backend.procedural.pose import interpolate
+from motion_backend.procedural.touch.hand_captions import (
+    Laid,
+    carried_as,
+    handling_of,
+    holding,
+    steadies,
+    with_arms,
+    with_both_hands,
+)
 from motion_backend.procedural.touch.hand_contacts import free_stroke, on_edge, other_hand, palm_on
 from motion_backend.procedural.touch.hand_placement import lies_free
 from motion_backend.procedural.touch.kneel import place_to_kneel
@@ -35,6 +44,8 @@ STAYS: Final = 0.9
 """Who has opened or shut something does not stay with the hand on it for longer (seconds)."""
 STEPS: Final = 33
 """Places of a handle on its way."""
+CARRIES_S: Final = 0.4
+"""How long the arm takes into the pose that something is carried in (seconds at tempo 1)."""
 TURNS_ALONG: Final = 0.4
 """How much of a door's turn the hand on it goes along with: the rest turns in its grip."""
 _HEIGHT: Final = re.compile(r"\b(?:low|medium|high)\b", re.IGNORECASE)
@@ -113,6 +124,9 @@ def _take_along(body: Body, part: Part, handle: Handle) -> None:
     goes = way, handle.does == "into"
     taken = pull(body.pose, (first, last), goes, manner, body.skeleton, seen, touch_keys(), body.rng)
     body.add(alive(taken, CALM * bearing.restless, body.rng, FPS))
+    if handling_of(action.caption) == "pick" and handle.does == "into":
+        carries = with_arms(body.pose, (int(action.hand == "right"),), carried_as(action.holds))
+        body.add(interpolate([0.0, CARRIES_S / bearing.tempo], [body.pose, carries], FPS))
 
 
 def _free_feet(body: Body) -> tuple[int, ...]:

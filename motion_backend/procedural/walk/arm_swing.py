@@ -13,6 +13,7 @@ from motion_backend import rotations
 from motion_backend.motion import FPS
 from motion_backend.procedural.emotion_style import arm_arrays, arm_poses
 from motion_backend.procedural.pose import smooth
+from motion_backend.procedural.touch.hand_captions import CARRYING
 from motion_backend.procedural.walk.footsteps import Steps
 from motion_backend.procedural.walk.root_path import Route
 from motion_backend.procedural.walk.stride import Stride
@@ -22,8 +23,6 @@ from motion_backend.skeleton import ARM_LENGTH
 from scene_graphs.data_tables import read_table, table
 
 Depth = Callable[[Array], Array]
-CARRIED = "carry"
-"""The arm pose of a hand that holds something: it stays as it is where something is begun."""
 
 
 @table
@@ -210,7 +209,7 @@ def arm_spread(route: Route, style: Walk, scale: float, depth: Depth, stride: St
             spread[:, index] = begin + (1 - begin) * smooth((at - row.after_s * (stride is None)) / row.within_s)
             lacks = 1 - _free(route, index, arms, scale, depth)
             spread[:, index] *= 1 - lacks * (1.0 if stride is None else smooth(at / row.comes_down_s))
-        if takes_room or (style.release and arms != CARRIED):
+        if takes_room or (style.release and arms not in CARRYING):
             spread[:, index] *= smooth((at[-1] - at) / row.down_s)
     return spread
 

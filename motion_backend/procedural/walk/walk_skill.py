@@ -163,7 +163,7 @@ def _go(body: Body, goal: Point, facing: float | None, action: Action, onward: P
     if style.begins != ("hang", "hang") and body.stride is None and not near:
         _take_up(body, style)
     body.enter(PhaseKind.WALK)
-    arms = arms_on_the_way(body.pose, style.bearing.arms)
+    arms = arms_on_the_way(body.pose, style.bearing.arms, action.holds)
     style = replace(style, bearing=replace(style.bearing, arms=arms), character=gait_character(body.seed))
     path = _way_to(body, goal) if not near else np.array([body.place, goal])
     if away < SHORT_WAY and to_turn < TURNING_ROUND:

@@ -16,9 +16,12 @@ from motion_backend.backend_protocol import BodyState
 from motion_backend.body.scene_collision import Obstacles
 from motion_backend.metrics.caption_predicates import judge_caption
 from motion_backend.motion import Action, Character, Emotion, Motion, Skill
-from motion_backend.procedural.touch.hand_captions import FINGER, FINGERS, Laid
+from motion_backend.procedural.emotion_style import Bearing
+from motion_backend.procedural.held_poses import standing
+from motion_backend.procedural.pose import Pose
+from motion_backend.procedural.touch.hand_captions import FINGER, FINGERS, Laid, arms_on_the_way, holding
 from motion_backend.procedural.touch.hand_contacts import KNOCKED, free_stroke, is_top, palm_on, suits, to_knock_on
-from motion_backend.skeleton import HAND_REST, INDEX
+from motion_backend.skeleton import HAND_REST, INDEX, build_skeleton
 from scene_graphs.affordances.affordances import spots
 from scene_graphs.home import Home, home_from_layouts
 from scene_graphs.layout import Placed
@@ -274,3 +277,16 @@ def test_who_works_at_a_low_table_squats_to_it() -> None:
         lowest = joints[:, 0, 1].argmin()
         trunk = joints[lowest, INDEX["neck"]] - joints[lowest, 0]
         assert np.degrees(np.arccos(trunk[1] / np.linalg.norm(trunk))) < 58
+
+
+def test_what_hangs_from_a_hand_is_carried_at_the_side_and_anything_else_before_the_body() -> None:
+    def stood(*arms: str) -> Pose:
+        return standing((0.0, 0.0), 0.0, replace(Bearing(), arms=(arms[0], arms[1])), build_skeleton(1.7))
+
+    free = ("hang", "hang")
+    assert arms_on_the_way(stood("hang", "carry"), free, "bag") == ("hang", "carry_low")
+    assert arms_on_the_way(stood("hang", "carry"), free, "book") == ("hang", "carry")
+    assert arms_on_the_way(stood("carry_low", "hang"), free) == ("carry_low", "hang")
+    assert arms_on_the_way(stood("hang", "carry"), ("hang", "phone_right"), "bag") == ("hang", "phone_right")
+    assert arms_on_the_way(stood(*free), free, "bag") == free
+    assert holding(stood("carry_low", "hang")) == (True, False)
