@@ -85,6 +85,8 @@ class Idle:
     spine_side_rad: float
     least_share: float
     """Of these, whatever the mood: nobody alive is a statue."""
+    least_lying_share: float
+    """And of who lies."""
     lying_share: float
     """Of how the trunk moves of who is up: what of it is left to who lies."""
     head_forward_rad: float
@@ -226,11 +228,9 @@ def idle(pose: Pose, seconds: float, size: float, rng: np.random.Generator, fps:
     ease = (1 - np.exp(-time / (row.ease_s * fps)))[:, None]
     slow = [_wander(frames, row, rng, fps) for _ in range(4)]
     breath = np.sin(2 * np.pi * (row.breath_hz * time / fps + rng.uniform() + row.breath_uneven_share * slow[3]))
-    moved = (
-        (row.least_share + (1 - row.least_share) * size)
-        * _bends_lying(pose.hips, row)
-        * _bends(slow, _shifts(frames, rng, fps), row)
-    )
+    left = _bends_lying(pose.hips, row)
+    least = row.least_share if (left == 1).all() else row.least_lying_share
+    moved = (least + (1 - least) * size) * left * _bends(slow, _shifts(frames, rng, fps), row)
     moved[:, 0] += row.breath_rad * breath
     spine = held.spine + ease * moved
     nod, turn = row.head_forward_rad * size * slow[2], row.head_turn_rad * size * slow[3]

@@ -150,7 +150,7 @@ def test_a_hand_before_the_trunk_appeals_to_who_sees_it_and_not_to_who_is_behind
         return with_deed.look([], camera).appeal - without.look([], camera).appeal
 
     assert gain(0.5) > 2.0
-    assert gain(np.pi) < 1.0
+    assert gain(np.pi) < 0.5 * gain(0.5)
 
 
 def test_what_is_outside_of_a_home_is_no_picture() -> None:
