@@ -65,7 +65,7 @@ def _deed(motion: Motion, keyframe: int, segment: tuple[int, int], role: Role, t
         arrives = max(arrives, _stops(motion, start, stop))
     # What is all way is done on the way.
     arrives = arrives if start <= arrives < stop else start
-    if keyframe in role.asleep:
+    if keyframe in role.asleep and arrives < stop:
         arrives = _sinks(motion, arrives, stop)
     return max([arrives, *own])
 

@@ -111,3 +111,9 @@ def test_words_can_be_read_and_none_stands_before_its_deed_but_to_be_read(
         hurried = following.start - line.start <= 1.1 * max(1.6, len(line.text) / 15) * FPS + 2
         assert line.start >= deed or hurried
     assert "".join(c for line in shown for c in line.text if c.isalpha()) == "".join(words)
+
+
+def test_a_film_may_end_before_somebody_falls_asleep() -> None:
+    motion = with_phases((PhaseKind.WALK, 60))
+    role = Role(asleep=frozenset({1}), captions={1: (Skill.LIEDOWN, "lie down")})
+    assert deeds(told_of((0,), (1,)), motion, [(0, 60), (60, 60)], role) == [0, 60]
