@@ -142,11 +142,6 @@ def clauses_of_text(text: str) -> tuple[Clause, ...]:
     return tuple(in_story_time(sentences, found))
 
 
-def _doer(part: Clause, doer: str) -> str:
-    """Who does a clause: its own subject where it tells of a noun, or means another than is written."""
-    return part.subject if part.aside else (part.plainly and part.subject) or doer
-
-
 def _as_supposed(parts: Sequence[Clause], pieces: Sequence[Piece]) -> list[Clause]:
     """The clauses of a piece, denied where that would be so if something were: "if she were he, | she would knock"."""
     supposed = any(piece.joint in _SUPPOSING or piece.tokens[0].low in _SUPPOSING for piece in pieces)

@@ -23,7 +23,7 @@ from planner_service.themes.theme_words import theme_words
 from planner_service.themes.things import things
 from scene_graphs.furniture import catalogue, is_known
 
-_WORD: Final = re.compile(r"(?<![\w'’-])[a-z]{4,}(?![\w'’-])")
+_WORD: Final = re.compile(r"(?<![\w'’-])[a-z]{4,24}(?![\w'’-])")
 _FEWEST: Final = 5
 """Letters of a word in which there may be one too many or too few."""
 _SLANG: Final = frozenset(("booty", "hiit"))
